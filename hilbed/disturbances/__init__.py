@@ -1,0 +1,1 @@
+"""Disturbances: one function each, switched on and off by the scenario."""

@@ -1,0 +1,1 @@
+"""Estimators: from odometry and readings to a pose and its covariance."""

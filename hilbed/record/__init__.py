@@ -1,0 +1,1 @@
+"""Recorders: columns, MCAP and candump."""

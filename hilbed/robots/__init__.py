@@ -1,0 +1,1 @@
+"""Robots: their kinematics and what their frames mean."""

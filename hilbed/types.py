@@ -1,0 +1,154 @@
+"""The nouns of the bench: plain values that every part understands and none owns.
+
+Axes are those of REP-103 (x forward, y left, yaw counter-clockwise), units are SI, time is integer
+nanoseconds since the start of the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Nanos: TypeAlias = int
+Array: TypeAlias = npt.NDArray[np.float64]
+
+
+class HilbedError(Exception):
+    """Anything the bench says to its user instead of showing a traceback."""
+
+
+class ScenarioError(HilbedError):
+    """Something found before the first cycle; `str()` holds every problem, one a line."""
+
+
+class BusError(HilbedError):
+    """Something found on an opened bus: node missing, wrong identity, SDO abort, bus lost."""
+
+
+class Diverged(HilbedError):
+    """The run cannot go on: a number is not finite, the robot fell over or left the world."""
+
+
+class Pose(NamedTuple):
+    """Position (m) and yaw (rad, in (−π, π]) of the midpoint of the (rear) axle in the map."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+class Command(NamedTuple):
+    """What a controller asks for: speed v (m/s) of the axle's midpoint and yaw rate w (rad/s)."""
+
+    v: float
+    w: float
+
+
+class Frame(NamedTuple):
+    """One CAN frame."""
+
+    id: int
+    data: bytes = b""
+    extended: bool = False
+    remote: bool = False
+
+
+class Received(NamedTuple):
+    """A frame with the moment at which its last bit had been received."""
+
+    t: Nanos
+    frame: Frame
+
+
+class DriveSignals(NamedTuple):
+    """One drive as the controller sees it: what it asked for and what came back over the bus.
+
+    speed_ref, speed_measured: rad/s at the wheel; current_measured: A; NaN until the first PDO.
+    """
+
+    speed_ref: float
+    speed_measured: float
+    current_measured: float
+
+
+class Odometry(NamedTuple):
+    """What the encoders say since the previous reading.
+
+    t: when the counts were sampled (not when they arrived); distance (m) along the arc and turn (rad)
+    since the previous reading's t (both zero while nothing new has arrived); v (m/s) and w (rad/s) at t;
+    drives: by name, empty where the robot has none.
+    """
+
+    t: Nanos
+    distance: float
+    turn: float
+    v: float
+    w: float
+    drives: Mapping[str, DriveSignals] = {}
+
+
+class Reading(NamedTuple):
+    """One measurement of the surroundings, without any truth in it.
+
+    kind: "azimuth" (rad, robot's frame, from the sensor's optical centre), "range" (m), "position" (m, m);
+    t: exposure; delivered: when the controller gets it; value and std: one number a component;
+    beacon: index in the scenario's list of beacons, None where the identity is unknown.
+    """
+
+    kind: str
+    t: Nanos
+    delivered: Nanos
+    value: tuple[float, ...]
+    std: tuple[float, ...]
+    beacon: int | None = None
+
+
+class Innovation(NamedTuple):
+    """One comparison of a reading with its prediction: NIS over `dof` degrees of freedom."""
+
+    t: Nanos
+    nis: float
+    dof: int
+    accepted: bool
+
+
+class Estimate(NamedTuple):
+    """What an estimator believes at its t: mean (3,) x, y, yaw; covariance (3, 3).
+
+    innovations: those of the step that made it; cloud: (M, 3) particles where the estimator has them.
+    """
+
+    t: Nanos
+    mean: Array
+    covariance: Array
+    innovations: tuple[Innovation, ...] = ()
+    cloud: Array | None = None
+
+
+class ReferencePoint(NamedTuple):
+    """Where the robot should be, and the speeds that keep it there."""
+
+    pose: Pose
+    v: float
+    w: float
+
+
+class Truth(NamedTuple):
+    """What the plant knows: for the recorder, the judge and ideal sensors only."""
+
+    t: Nanos
+    pose: Pose
+
+
+class Cycle(NamedTuple):
+    """One control period, as the recorder gets it."""
+
+    t: Nanos
+    truth: Truth
+    odometry: Odometry
+    readings: list[Reading]
+    estimate: Estimate
+    command: Command
