@@ -9,4 +9,5 @@ import numpy as np
 
 def stream(seed: int, name: str) -> np.random.Generator:
     """Returns the generator of the source `name` in the run with `seed`: the same in every process."""
-    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=(crc32(name.encode()),))))
+    sequence = np.random.SeedSequence(seed, spawn_key=(crc32(name.encode()),))
+    return np.random.Generator(np.random.PCG64(sequence))
