@@ -15,6 +15,8 @@ from hilbed.types import (
     Reading,
     Received,
     ReferencePoint,
+    Snapshot,
+    Transfer,
     Truth,
 )
 
@@ -92,6 +94,14 @@ class Witness(Protocol):
 
     def reading(self, reading: Reading, beacon: int, true: tuple[float, ...]) -> None:
         """Notes a reading with its true beacon (−1: spurious) and true value (NaN: none)."""
+        ...
+
+    def snapshot(self, snapshot: Snapshot) -> None:
+        """Notes an exposed camera frame and what was found in it."""
+        ...
+
+    def transfer(self, transfer: Transfer) -> None:
+        """Notes a frame that has crossed the bus."""
         ...
 
 

@@ -63,6 +63,16 @@ class Received(NamedTuple):
     frame: Frame
 
 
+class Transfer(NamedTuple):
+    """A frame's whole way over the wire: queued, first bit on the bus, last bit received; who sent it."""
+
+    queued: Nanos
+    start: Nanos
+    end: Nanos
+    frame: Frame
+    node: str
+
+
 class DriveSignals(NamedTuple):
     """One drive as the controller sees it: what it asked for and what came back over the bus.
 
@@ -104,6 +114,19 @@ class Reading(NamedTuple):
     value: tuple[float, ...]
     std: tuple[float, ...]
     beacon: int | None = None
+
+
+class Snapshot(NamedTuple):
+    """One exposed frame for the record: image (H, W, 3) uint8 RGB, pan (rad, robot's frame).
+
+    pixels: column of each detection; beacons: its identity, None where unknown.
+    """
+
+    t: Nanos
+    image: npt.NDArray[np.uint8]
+    pan: float
+    pixels: tuple[float, ...]
+    beacons: tuple[int | None, ...]
 
 
 class Innovation(NamedTuple):
