@@ -1,0 +1,54 @@
+"""What loads a drive or starves it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from hilbed.clock import seconds
+from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
+from hilbed.effects import Effects, Surroundings
+from hilbed.spec import Finite, NonNegative, Positive
+from hilbed.types import Nanos
+
+IMPULSE_LENGTH = 0.02
+"""s; an impulse without a length is a pulse this long, a blow that the 1 ms tick still resolves."""
+
+
+class LoadTorque(DisturbanceBase):
+    """A torque of `size` N m on a wheel's axle, positive against forward rotation.
+
+    shape: step (at once), ramp (rises linearly to `size` over `rise` s, then stays), impulse (one pulse of
+    `length`, 20 ms where none is given).
+    """
+
+    kind: Literal["load_torque"] = "load_torque"
+    drive: str
+    size: Finite
+    shape: Literal["step", "ramp", "impulse"] = "step"
+    rise: Positive = 1.0
+
+
+class SupplySag(DisturbanceBase):
+    """Takes `size` V off the supply's open-circuit voltage."""
+
+    kind: Literal["supply_sag"] = "supply_sag"
+    size: NonNegative
+
+
+def load_torque(spec: LoadTorque, wheel: int) -> Disturbance:
+    """Returns the disturbance that loads the wheel with that index."""
+
+    def apply(since: Nanos, _: Surroundings, effects: Effects) -> None:
+        part = min(1.0, seconds(since) / spec.rise) if spec.shape == "ramp" else 1.0
+        effects.load_torque[wheel] += part * spec.size
+
+    return apply
+
+
+def supply_sag(spec: SupplySag, _: int) -> Disturbance:
+    """Returns the disturbance that lowers the supply."""
+
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+        effects.supply_drop += spec.size
+
+    return apply

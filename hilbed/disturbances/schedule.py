@@ -1,0 +1,52 @@
+"""Which disturbances act at a moment: each has a start and a length, and is asked only in between."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
+
+from hilbed.clock import nanos
+from hilbed.effects import Effects, Surroundings
+from hilbed.spec import NonNegative, Positive, Spec
+from hilbed.types import Nanos
+
+Disturbance: TypeAlias = Callable[[Nanos, Surroundings, Effects], None]
+"""Writes into the effects what it does at a time since its own start."""
+
+NEVER: Nanos = 2**62
+
+
+class DisturbanceBase(Spec):
+    """What every disturbance has: when it starts (s) and how long it lasts (s, for good if left out)."""
+
+    start: NonNegative = 0.0
+    length: Positive | None = None
+
+
+class Schedule:
+    """Applies the disturbances that are active; `effects` holds the result until the next call."""
+
+    def __init__(self, entries: Sequence[tuple[DisturbanceBase, Disturbance]], effects: Effects) -> None:
+        self.effects = effects
+        self._entries = [(nanos(spec.start), _end(spec), disturbance) for spec, disturbance in entries]
+        self._active: list[tuple[Nanos, Disturbance]] = []
+        self._edge: Nanos = 0
+
+    def apply(self, t: Nanos, surroundings: Surroundings) -> None:
+        """Brings the effects to their state for the tick that starts at `t`."""
+        if t >= self._edge:
+            self._switch(t)
+        elif not self._active:
+            return
+        self.effects.reset()
+        for start, disturbance in self._active:
+            disturbance(t - start, surroundings, self.effects)
+
+    def _switch(self, t: Nanos) -> None:
+        self._active = [(start, act) for start, end, act in self._entries if start <= t < end]
+        edges = [edge for start, end, _ in self._entries for edge in (start, end) if edge > t]
+        self._edge = min(edges, default=NEVER)
+
+
+def _end(spec: DisturbanceBase) -> Nanos:
+    return NEVER if spec.length is None else nanos(spec.start) + nanos(spec.length)

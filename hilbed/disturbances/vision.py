@@ -1,0 +1,41 @@
+"""What the camera sees that is not there, and when it sees nothing."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
+from hilbed.effects import Effects, Surroundings
+from hilbed.spec import NonNegative
+from hilbed.types import Nanos
+
+
+class SpuriousAzimuths(DisturbanceBase):
+    """False azimuths: `size` of them in a frame on the average (Poisson)."""
+
+    kind: Literal["spurious_azimuths"] = "spurious_azimuths"
+    size: NonNegative
+
+
+class CameraLoss(DisturbanceBase):
+    """The camera delivers no frames."""
+
+    kind: Literal["camera_loss"] = "camera_loss"
+
+
+def spurious_azimuths(spec: SpuriousAzimuths, _: int) -> Disturbance:
+    """Returns the disturbance that adds false azimuths to the frames."""
+
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+        effects.spurious += spec.size
+
+    return apply
+
+
+def camera_loss(_: CameraLoss, __: int) -> Disturbance:
+    """Returns the disturbance that blinds the camera."""
+
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+        effects.blind = True
+
+    return apply

@@ -1,0 +1,59 @@
+"""The bench on one screen: a rig, its control cycle and its run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from hilbed.cost import Cost, perf_counter
+from hilbed.ports import Base, Controller, Estimator, Plant, Sensor
+from hilbed.types import Cycle, Nanos
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Everything one run needs, each part behind its seam; `period` is that of the control cycle."""
+
+    base: Base
+    sensors: tuple[Sensor, ...]
+    estimator: Estimator
+    controller: Controller
+    plant: Plant
+    period: Nanos
+    cost: Cost
+
+
+def think(rig: Rig, t: Nanos) -> Cycle:
+    """Reads the robot and its sensors at `t` and decides what to do, without doing it."""
+    truth = rig.plant.truth()
+    start = perf_counter()
+    odometry = rig.base.read(t)
+    rig.cost.bus += perf_counter() - start
+    readings = [reading for sensor in rig.sensors for reading in sensor.read(t)]
+    start = perf_counter()
+    estimate = rig.estimator.step(t, odometry, readings)
+    thought = perf_counter()
+    command = rig.controller.step(t, estimate)
+    rig.cost.controller += perf_counter() - thought
+    rig.cost.estimator += thought - start
+    return Cycle(t, truth, odometry, readings, estimate, command)
+
+
+def cycle(rig: Rig, t: Nanos) -> Cycle:
+    """Runs the control period that starts at `t`: read, think, write, let the world move."""
+    thought = think(rig, t)
+    start = perf_counter()
+    rig.base.write(t, thought.command)
+    rig.cost.bus += perf_counter() - start
+    rig.plant.advance(t, t + rig.period)
+    return thought
+
+
+def run(rig: Rig, duration: Nanos) -> Iterator[Cycle]:
+    """Yields the cycles of a run, and last what is known and decided at its very end.
+
+    duration: ns, a multiple of the period. Yields duration / period + 1 cycles; the last one moves nothing.
+    """
+    for t in range(0, duration, rig.period):
+        yield cycle(rig, t)
+    yield think(rig, duration)

@@ -1,0 +1,38 @@
+"""The differential drive: two driven wheels on one axle, yaw from their difference."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from hilbed.spec import Positive, Spec
+from hilbed.types import Command
+
+
+class DiffDriveSpec(Spec):
+    """Nominal geometry, as the controller knows it: wheel radius and track in m; URDF of the body."""
+
+    kind: Literal["diffdrive"] = "diffdrive"
+    wheel_radius: Positive = 0.1
+    track: Positive = 0.4
+    urdf: str = "package:urdf/diffdrive.urdf"
+
+
+class DiffDrive:
+    """Kinematics of Slimane et al. 2014 (3): v = R (ω_l + ω_r) / 2, w = R (ω_r − ω_l) / E."""
+
+    drives = ("left", "right")
+
+    def __init__(self, spec: DiffDriveSpec) -> None:
+        self._radius = spec.wheel_radius
+        self._track = spec.track
+
+    def wheel_speeds(self, command: Command) -> tuple[float, ...]:
+        """Returns rad/s of the left and the right wheel for a command (m/s, rad/s)."""
+        difference = command.w * self._track / 2
+        return (command.v - difference) / self._radius, (command.v + difference) / self._radius
+
+    def travel(self, turned: Sequence[float]) -> tuple[float, float]:
+        """Returns distance (m) and turn (rad) for angles (rad) of the wheels, or v and w for rates."""
+        left, right = turned
+        return self._radius * (left + right) / 2, self._radius * (right - left) / self._track
