@@ -1,0 +1,138 @@
+"""A user's mistake answered with file, line, key, what was given and the nearest valid word."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Iterator, Sequence
+from difflib import get_close_matches
+from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from hilbed.scenario import yaml12
+
+
+class Problem(NamedTuple):
+    """Something wrong at a path of the scenario."""
+
+    path: yaml12.Path
+    message: str
+
+
+class Places:
+    """Says where a path of the scenario was written: a line of the file or a `--set`."""
+
+    def __init__(self, name: str, marks: yaml12.Marks) -> None:
+        self._name = name
+        self._marks = marks
+        self._settings: list[tuple[yaml12.Path, str]] = []
+
+    def overlaid(self, path: yaml12.Path, setting: str) -> None:
+        """Notes that `--set` has written the value at `path`."""
+        self._settings.append((path, setting))
+
+    def of(self, path: Sequence[str | int]) -> str:
+        """Returns `file:line` or `--set PATH=VALUE`."""
+        for written, setting in reversed(self._settings):
+            if _stands_in(written, path):
+                return f"--set {setting}"
+        return f"{self._name}:{self._marks.line(path)}"
+
+    def tell(self, problems: Sequence[Problem]) -> str:
+        """Returns every problem, one a line, in the order of the file."""
+        lines = sorted(problems, key=lambda problem: self._marks.line(problem.path))
+        return "\n".join(f"{self.of(path)}: {message}" for path, message in lines)
+
+
+def _stands_in(written: yaml12.Path, path: Sequence[str | int]) -> bool:
+    """Tells whether `written` leads to `path`, which may hold union tags in between."""
+    steps = iter(path)
+    return all(any(step == other for other in steps) for step in written)
+
+
+def from_validation(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
+    """Turns pydantic's errors into problems with the words that would do."""
+    return [
+        Problem(tuple(item["loc"]), _message(dict(item), model))
+        for item in error.errors(include_url=False)
+    ]  # fmt: skip
+
+
+def _message(item: dict[str, Any], model: type[BaseModel]) -> str:
+    path, kind, given = item["loc"], item["type"], item["input"]
+    context = item.get("ctx", {})
+    key = ".".join(str(step) for step in path)
+    if kind == "extra_forbidden":
+        return f"unknown key {path[-1]!r}{nearest(str(path[-1]), keys_at(model, path[:-1]))}"
+    if kind == "missing":
+        return f"{key} is missing"
+    if kind == "union_tag_not_found":
+        return f"{key} needs a kind: one of {_words(context)}"
+    if kind == "union_tag_invalid":
+        tag = str(context["tag"])
+        return f"{key}: unknown kind {tag!r}{nearest(tag, _words(context).split(', '))}"
+    if kind == "literal_error":
+        words = [word.strip("' ") for word in str(context["expected"]).replace(" or ", ", ").split(",")]
+        return f"{key}: {given!r}{nearest(str(given), words)}"
+    if kind == "value_error":
+        return f"{key}: {context.get('error', item['msg'])}" if key else str(context.get("error", item["msg"]))
+    return f"{key}: {item['msg'][0].lower()}{item['msg'][1:]}, given {shorten(given)}"
+
+
+def _words(context: dict[str, Any]) -> str:
+    return str(context.get("expected_tags", "")).replace("'", "")
+
+
+def shorten(given: object) -> str:
+    """Returns what was given, in at most 60 characters."""
+    text = repr(given)
+    return text if len(text) <= 60 else text[:57] + "…"
+
+
+def nearest(word: str, words: Sequence[str]) -> str:
+    """Returns the end of a sentence: the valid word meant, or all of them."""
+    close = get_close_matches(word, words, n=1)
+    if close:
+        return f"; did you mean {close[0]!r}?"
+    return f"; known: {', '.join(sorted(words))}" if words else ""
+
+
+def keys_at(model: type[BaseModel], path: Sequence[str | int]) -> list[str]:
+    """Returns the keys that a model takes at a path, whose steps may be union tags."""
+    inside: list[Any] = [model]
+    for step in path:
+        inside = [inner for annotation in inside for inner in _enter(annotation, step)]
+    return [key for annotation in inside for choice in _choices(annotation) for key in _fields(choice)]
+
+
+def _enter(annotation: Any, step: str | int) -> Iterator[Any]:
+    """Yields the annotations one step further in: a field's, an item's, or a union's choice by its tag."""
+    for choice in _choices(annotation):
+        if get_origin(choice) in (list, tuple, dict):
+            yield get_args(choice)[-1]
+        elif step in _fields(choice):
+            yield _fields(choice)[step]
+        elif step in _tags(choice):
+            yield choice
+
+
+def _choices(annotation: Any) -> Iterator[Any]:
+    """Yields what an annotation may be: itself, or each member of a union."""
+    if get_origin(annotation) is Annotated:
+        yield from _choices(get_args(annotation)[0])
+    elif get_origin(annotation) in (Union, types.UnionType):
+        for choice in get_args(annotation):
+            yield from _choices(choice)
+    else:
+        yield annotation
+
+
+def _fields(model: Any) -> dict[str | int, Any]:
+    if not (isinstance(model, type) and issubclass(model, BaseModel)):
+        return {}
+    return {field.alias or name: field.annotation for name, field in model.model_fields.items()}
+
+
+def _tags(model: Any) -> tuple[Any, ...]:
+    kind = _fields(model).get("kind")
+    return get_args(kind) if get_origin(kind) is Literal else ()
