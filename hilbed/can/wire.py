@@ -1,0 +1,200 @@
+"""A CAN 2.0 A/B medium in simulated time: exact frame lengths, arbitration, latency, load.
+
+Event driven: nothing happens between the ends of frames. A frame starts when the bus has been idle for
+the interframe space and, of all frames queued by then, it has the lowest identifier. Starts are not
+rounded to bit boundaries. No errors yet: two nodes that send the same identifier at once (an error on a
+real bus) are served in the order of queueing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from heapq import heappop, heappush
+from typing import NamedTuple
+
+from hilbed.can.frame_length import INTERFRAME_BITS, frame_bits
+from hilbed.clock import SECOND
+from hilbed.types import BusError, Frame, Nanos, Received, Transfer
+
+Listener = Callable[[Nanos, Frame], None]
+
+_LONG_AGO: Nanos = -(1 << 62)
+
+
+class Statistics(NamedTuple):
+    """Totals of a wire: frames received, time the bus was taken (interframe spaces included), worst wait.
+
+    worst_latency: the longest time from queueing to the first bit on the bus.
+    """
+
+    t: Nanos
+    frames: int
+    busy: Nanos
+    worst_latency: Nanos
+
+
+def load(before: Statistics, after: Statistics) -> float:
+    """Returns the bus load between two snapshots, 0 to 1 (frames count where they end)."""
+    return (after.busy - before.busy) / (after.t - before.t) if after.t > before.t else 0.0
+
+
+@lru_cache(maxsize=4096)
+def arbitration(identifier: int, extended: bool, remote: bool) -> int:
+    """Returns the 32 arbitration bits as a number: the lower one wins the bus (dominant is 0).
+
+    Standard: identifier, RTR, IDE = 0. Extended: base, SRR = 1, IDE = 1, extension, RTR. So data beats
+    remote, and a standard frame beats an extended one with the same base.
+    """
+    if not extended:
+        return identifier << 21 | remote << 20
+    return (identifier >> 18) << 21 | 0b11 << 19 | (identifier & 0x3FFFF) << 1 | remote
+
+
+class _Queued(NamedTuple):
+    """A frame that waits for the bus; entries sort by arbitration, then by order of queueing."""
+
+    key: int
+    order: int
+    queued: Nanos
+    frame: Frame
+    bits: int
+    sender: Port
+
+
+class Port:
+    """A node's CAN controller: `send` and `recv` of ports.Bus.
+
+    It has as many transmit mailboxes as it takes and offers the one with the lowest identifier first
+    (equal identifiers in order of queueing); it does not hear what it sends itself.
+    """
+
+    __slots__ = ("_inbox", "_wire", "deliver", "name")
+
+    def __init__(self, wire: Wire, name: str, on_frame: Listener | None) -> None:
+        self.name = name
+        self.deliver = on_frame or self._store
+        self._wire = wire
+        self._inbox: list[Received] = []
+
+    def send(self, t: Nanos, frame: Frame) -> None:
+        """Queues a frame at `t`, or now if `t` is past; BusError if it is no CAN frame."""
+        self._wire.queue(t, frame, self)
+
+    def recv(self, t: Nanos) -> list[Received]:
+        """Returns what has arrived up to and including `t` since the last call."""
+        arrived = self._inbox
+        if arrived and arrived[-1].t > t:
+            self._inbox = [received for received in arrived if received.t > t]
+            return [received for received in arrived if received.t <= t]
+        self._inbox = []
+        return arrived
+
+    def _store(self, t: Nanos, frame: Frame) -> None:
+        self._inbox.append(Received(t, frame))
+
+
+class Wire:
+    """The medium between ports; `advance` runs it, `on_transfer` is told every frame at its end.
+
+    bitrate: bit/s, a bit must last whole nanoseconds (else BusError). Time starts long ago, so that a bench
+    may boot its drives before t = 0.
+    """
+
+    def __init__(self, bitrate: int, on_transfer: Callable[[Transfer], None] | None = None) -> None:
+        if bitrate <= 0 or SECOND % bitrate:
+            raise BusError(f"bit rate {bitrate}: a bit must last a whole number of nanoseconds")
+        self.bitrate = bitrate
+        self.now = _LONG_AGO
+        self._bit: Nanos = SECOND // bitrate
+        self._on_transfer = on_transfer
+        self._ports: list[Port] = []
+        self._hearers: dict[Port, tuple[Listener, ...]] = {}
+        self._ready: list[_Queued] = []
+        self._waiting: list[tuple[Nanos, _Queued]] = []  # queued ahead of time
+        self._flight: tuple[Transfer, Port] | None = None
+        self._free: Nanos = _LONG_AGO
+        self._order = 0
+        self._frames, self._busy, self._worst = 0, 0, 0
+
+    def attach(self, name: str, on_frame: Listener | None = None) -> Port:
+        """Adds a node. With `on_frame` it is called as the last bit of a frame arrives and may send at once;
+        without it frames wait in the port until `recv`."""
+        port = Port(self, name, on_frame)
+        self._ports.append(port)
+        self._connect()
+        return port
+
+    def detach(self, port: Port) -> None:
+        """Takes a node off; what it has queued is still sent."""
+        self._ports.remove(port)
+        self._connect()
+
+    def queue(self, t: Nanos, frame: Frame, sender: Port) -> None:
+        """Queues a frame of `sender` at `t`, or now if `t` is past."""
+        bits = frame_bits(frame)
+        self._order = order = self._order + 1
+        key = arbitration(frame.id, frame.extended, frame.remote)
+        if t <= self.now:
+            heappush(self._ready, _Queued(key, order, self.now, frame, bits, sender))
+        else:
+            heappush(self._waiting, (t, _Queued(key, order, t, frame, bits, sender)))
+
+    def advance(self, until: Nanos) -> None:
+        """Runs everything that completes by `until`."""
+        while self.step(until):
+            pass
+
+    def step(self, until: Nanos) -> bool:
+        """Runs to the end of the next frame, at most to `until`; returns whether a frame has ended."""
+        flight = self._flight or self._arbitrate(until)
+        if flight is None or flight[0].end > until:
+            self.now = max(self.now, until)
+            return False
+        transfer, sender = flight
+        queued, start, end, frame, _ = transfer
+        self._flight = None
+        self.now = end
+        self._frames += 1
+        self._busy += self._free - start
+        if start - queued > self._worst:
+            self._worst = start - queued
+        if self._on_transfer is not None:
+            self._on_transfer(transfer)
+        for deliver in self._hearers.get(sender) or self._others(sender):
+            deliver(end, frame)
+        return True
+
+    @property
+    def pending(self) -> int:
+        """Frames that are queued or on the bus."""
+        return len(self._ready) + len(self._waiting) + (self._flight is not None)
+
+    def statistics(self) -> Statistics:
+        """Returns the totals up to now."""
+        return Statistics(self.now, self._frames, self._busy, self._worst)
+
+    def _arbitrate(self, until: Nanos) -> tuple[Transfer, Port] | None:
+        """Starts the next frame, if one can start before `until`: a rival may still be queued at `until`."""
+        ready, waiting = self._ready, self._waiting
+        if ready:  # queued while the bus was taken, or just now
+            start = max(self._free, self.now)
+        elif waiting:
+            start = max(self._free, waiting[0][0])
+        else:
+            return None
+        if start >= until:
+            return None
+        while waiting and waiting[0][0] <= start:
+            heappush(ready, heappop(waiting)[1])
+        _, _, queued, frame, bits, sender = heappop(ready)
+        end = start + bits * self._bit
+        self._free = end + INTERFRAME_BITS * self._bit
+        self._flight = flight = (Transfer(queued, start, end, frame, sender.name), sender)
+        return flight
+
+    def _others(self, sender: Port) -> tuple[Listener, ...]:
+        return tuple(port.deliver for port in self._ports if port is not sender)
+
+    def _connect(self) -> None:
+        self._hearers = {port: self._others(port) for port in self._ports}
