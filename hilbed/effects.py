@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 from hilbed.types import Pose
 
@@ -37,11 +38,11 @@ class Effects:
         self.blind = False
 
 
-class Surroundings:
-    """What a disturbance may look at: where the robot and each of its wheels touch the ground."""
+class Surroundings(Protocol):
+    """What a disturbance may look at: where the robot is and where each wheel touches the ground (m, map)."""
 
-    __slots__ = ("pose", "wheels")
+    @property
+    def pose(self) -> Pose: ...
 
-    def __init__(self, pose: Pose, wheels: Sequence[tuple[float, float]]) -> None:
-        self.pose = pose
-        self.wheels = wheels
+    @property
+    def wheels(self) -> Sequence[tuple[float, float]]: ...

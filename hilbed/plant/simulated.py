@@ -1,0 +1,201 @@
+"""The simulated far end: drives on the bus, their shafts and the world, tick by tick."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from firmware_sim import Drive
+from hilbed.cost import Cost, perf_counter
+from hilbed.effects import Effects
+from hilbed.plant import pins
+from hilbed.ports import Bus, Sensor
+from hilbed.types import Array, Frame, Nanos, Pose, Truth
+
+SIGNALS = ("speed", "current", "slip", "load_torque", "torque", "speed_ref", "duty")
+"""What the tick log holds of each drive, units as in signals.npz."""
+
+
+class World(Protocol):
+    """Moves the robot by the torques at its wheels; lists are in the order of the drives."""
+
+    angles: Sequence[float]
+    speeds: Sequence[float]
+    slips: Sequence[float]
+
+    @property
+    def pose(self) -> Pose: ...
+
+    @property
+    def wheels(self) -> Sequence[tuple[float, float]]: ...
+
+    def step(self, torques: Sequence[float], coulomb: Sequence[float], effects: Effects) -> None: ...
+
+
+class Schedule(Protocol):
+    """Brings the effects of the disturbances up to date."""
+
+    effects: Effects
+
+    def apply(self, t: Nanos, surroundings: World) -> None: ...
+
+
+class Medium(Protocol):
+    """A bus in simulated time."""
+
+    def advance(self, until: Nanos) -> None: ...
+
+
+class Train(Protocol):
+    """Chopper, motor and gear of one wheel; `coulomb` is the dry friction (N m) the world lets act."""
+
+    coulomb: float
+    current: float
+    supply_current: float
+
+    def step(self, duty: float, enabled: bool, supply: float, wheel_speed: float) -> float: ...
+
+
+class Encoder(Protocol):
+    def sample(self, angle: float) -> int: ...
+
+
+class Supply(Protocol):
+    def voltage(self, current: float, drop: float) -> float: ...
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One drive from its node on the bus to its shaft."""
+
+    name: str
+    firmware: Drive
+    port: Bus
+    train: Train
+    encoder: Encoder
+
+    def on_frame(self, t: Nanos, frame: Frame) -> None:
+        """Hands a frame to the firmware and sends what it answers."""
+        self.firmware.on_frame(t, frame)
+        self.flush(t)
+
+    def flush(self, t: Nanos) -> None:
+        """Sends what the firmware has put into its outbox."""
+        outbox = self.firmware.outbox
+        if outbox:
+            for identifier, data, extended, remote in outbox:
+                self.port.send(t, Frame(identifier, data, extended, remote))
+            outbox.clear()
+
+
+class SimulatedPlant:
+    """Drives, shafts, world and wire on the physics clock; `tick` in ns.
+
+    In each tick the firmware reads its pins and sets a duty, chopper and motor turn it into torque, the
+    world takes a step, the bus delivers what arrives meanwhile, and sensors that are due take a sample.
+    """
+
+    def __init__(
+        self,
+        axes: Sequence[Axis],
+        world: World,
+        supply: Supply,
+        schedule: Schedule,
+        wire: Medium,
+        sensors: Sequence[Sensor],
+        tick: Nanos,
+        cost: Cost,
+    ) -> None:
+        self._axes = tuple(axes)
+        self._world = world
+        self._supply = supply
+        self._schedule = schedule
+        self._wire = wire
+        self._sensors = tuple(sensors)
+        self._tick = tick
+        self._cost = cost
+        self._now: Nanos = 0
+        self._log = array("d")
+        self._coulomb = [axis.train.coulomb for axis in self._axes]
+
+    def truth(self) -> Truth:
+        """Returns where the robot is now."""
+        return Truth(self._now, self._world.pose)
+
+    def idle(self, start: Nanos, end: Nanos) -> None:
+        """Runs firmware and bus with the shafts at rest, as while the drives are booted."""
+        volts = pins.supply(self._supply.voltage(0.0, 0.0))
+        for t in range(start, end, self._tick):
+            for axis, angle in zip(self._axes, self._world.angles, strict=True):
+                axis.firmware.tick(t, axis.encoder.sample(angle), 0, volts)
+                axis.flush(t)
+            self._wire.advance(t + self._tick)
+
+    def start(self) -> None:
+        """Takes the state at t = 0 into the log and the sensors' first samples."""
+        self._schedule.apply(0, self._world)
+        self._note([0.0] * len(self._axes), [0] * len(self._axes))
+        self._sample(0)
+
+    def advance(self, start: Nanos, end: Nanos) -> None:
+        """Moves everything from `start` to `end`; Diverged if the world does not stand that."""
+        for t in range(start, end, self._tick):
+            self._step(t)
+            self._now = t + self._tick
+            self._sample(self._now)
+
+    def _step(self, t: Nanos) -> None:
+        cost, world, effects = self._cost, self._world, self._schedule.effects
+        begun = perf_counter()
+        self._schedule.apply(t, world)
+        drawn = sum([axis.train.supply_current for axis in self._axes])
+        volts = self._supply.voltage(drawn, effects.supply_drop)
+        volts_pin = pins.supply(volts)
+        torques, duties = [], []
+        for axis, angle, speed in zip(self._axes, world.angles, world.speeds, strict=True):
+            firmware, train = axis.firmware, axis.train
+            duty = firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
+            if firmware.outbox:
+                axis.flush(t)
+            torques.append(train.step(pins.duty(duty), firmware.bridge_enabled, volts, speed))
+            duties.append(duty)
+        driven = perf_counter()
+        cost.drives += driven - begun
+        self._wire.advance(t + self._tick)
+        cost.bus += perf_counter() - driven
+        world.step(torques, self._coulomb, effects)
+        self._note(torques, duties)
+
+    def _note(self, torques: Sequence[float], duties: Sequence[int]) -> None:
+        world, loads = self._world, self._schedule.effects.load_torque
+        for k, axis in enumerate(self._axes):
+            self._log.extend(
+                (
+                    world.speeds[k],
+                    axis.train.current,
+                    world.slips[k],
+                    loads[k],
+                    torques[k],
+                    axis.firmware.speed_ref,
+                    pins.duty(duties[k]),
+                )
+            )
+
+    def _sample(self, t: Nanos) -> None:
+        for sensor in self._sensors:
+            if sensor.due <= t:
+                sensor.sample(self.truth())
+
+    def ticks(self, first: int = 0) -> dict[str, Array]:
+        """Returns the tick log from row `first` on: "tick/t" and "tick/drive/NAME/…", each (M,)."""
+        width = len(SIGNALS) * len(self._axes)
+        rows = np.array(self._log[first * width :]).reshape(-1, width)
+        columns = {"tick/t": (first + np.arange(len(rows))) * (self._tick * 1e-9)}
+        for k, axis in enumerate(self._axes):
+            for j, signal in enumerate(SIGNALS):
+                columns[f"tick/drive/{axis.name}/{signal}"] = rows[:, k * len(SIGNALS) + j].copy()
+        return columns

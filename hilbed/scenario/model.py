@@ -1,0 +1,46 @@
+"""The scenario: one model that collects those of all parts."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from hilbed.can.specs import BusSpec, NodeSpec
+from hilbed.control import ControllerSpec, ReferenceSpec
+from hilbed.criteria import CriterionSpec
+from hilbed.disturbances import DisturbanceSpec
+from hilbed.estimation import EstimatorSpec
+from hilbed.plant import PlantSpec
+from hilbed.robots import RobotSpec
+from hilbed.sensors import SensorSpec
+from hilbed.spec import NonNegative, Positive, Spec
+
+
+def _word(value: Any) -> Any:
+    """A word is short for a block of that kind: `controller: open_loop`."""
+    return {"kind": value} if isinstance(value, str) else value
+
+
+Word = BeforeValidator(_word)
+ByKind = Field(discriminator="kind")
+
+
+class Scenario(Spec):
+    """One experiment: duration and period in s; blocks as their own models say."""
+
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    duration: Positive
+    period: Positive = 0.01
+    robot: Annotated[RobotSpec, Word] = RobotSpec()
+    plant: Annotated[PlantSpec, ByKind, Word]
+    nodes: dict[str, Annotated[NodeSpec, Word]] = {}
+    bus: Annotated[BusSpec, Word] = BusSpec()
+    sensors: dict[str, Annotated[SensorSpec, Word]] = {}
+    estimator: Annotated[EstimatorSpec, ByKind, Word]
+    controller: Annotated[ControllerSpec, ByKind, Word]
+    reference: Annotated[ReferenceSpec, ByKind, Word] | None = None
+    disturbances: list[Annotated[DisturbanceSpec, ByKind]] = []
+    criteria: dict[str, CriterionSpec] = {}
+    record: Literal["all", "signals", "none"] = "all"
+    versions: dict[str, str] = {}
