@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import NoReturn
 
 from hilbed import __version__
-from hilbed.types import ScenarioError
+from hilbed.types import HilbedError, ScenarioError
 
-PASSED, FAILED, INTERRUPTED, INTERNAL, REFUSED, BUS = 0, 1, 2, 3, 4, 7
+INTERRUPTED, BROKEN, REFUSED = 2, 3, 4
+
+Options = argparse.Namespace
 
 
 class _Parser(argparse.ArgumentParser):
@@ -27,12 +29,16 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     from hilbed.console import quiet_pipe
 
     options = _parser().parse_args(arguments)
+    status = 0
     with quiet_pipe():
         try:
             status = options.command(options)
         except ScenarioError as error:
             print(error, file=sys.stderr)
             status = REFUSED
+        except HilbedError as error:
+            print(error, file=sys.stderr)
+            status = BROKEN
         except KeyboardInterrupt:
             print("interrupted", file=sys.stderr)
             status = INTERRUPTED
@@ -40,9 +46,95 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="hilbed", description="A bench for wheeled robots that behaves like a hardware-in-the-loop rig.")
+    text = "A bench for wheeled robots that behaves like a hardware-in-the-loop rig."
+    parser = _Parser(prog="hilbed", description=text)
     parser.add_argument("--version", action="version", version=f"hilbed {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=_Parser)
-    for add in (_add_run, _add_sweep, _add_list, _add_check, _add_report, _add_fit, _add_bench):
-        add(commands)
+
+    run = _command(commands, "run", _run, "run a scenario and judge it")
+    _add_scenario(run)
+    run.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
+    run.add_argument("--out", type=Path, metavar="DIR", help="run folder (runs/<scenario>-<seed>)")
+    run.add_argument("--force", action="store_true", help="replace an existing run folder")
+    run.add_argument("--json", action="store_true", help="print verdict.json on stdout and nothing else")
+    run.add_argument("--record", choices=("all", "signals", "none"), help="what is written (all)")
+
+    sweep = _command(commands, "sweep", _sweep, "run a scenario over seeds and values, in parallel")
+    _add_scenario(sweep)
+    sweep.add_argument("--seeds", required=True, metavar="A..B", help="seeds from A to B, both included")
+    sweep.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
+    sweep.add_argument("--json", action="store_true", help="print the table as JSON")
+
+    _command(commands, "list", _list, "list the bundled scenarios")
+    check = _command(commands, "check", _check, "validate a scenario and print every error with its line")
+    _add_scenario(check)
+    report = _command(commands, "report", _report, "write report.html of a run folder again")
+    report.add_argument("folder", type=Path, metavar="DIR")
+    fit = _command(commands, "fit", _fit, "print the noise, delay and offset that explain a run with truth")
+    fit.add_argument("run", type=Path, metavar="RUN", help="a run folder")
+    fit.add_argument("--fraction", type=float, default=0.5, help="first part of the run that is used (0.5)")
+    bench = _command(commands, "bench", _bench, "measure floor, total and where the time goes")
+    bench.add_argument("scenario", nargs="?", default="demo", metavar="SCENARIO")
     return parser
+
+
+def _command(
+    commands: argparse._SubParsersAction[_Parser], name: str, function: object, text: str
+) -> _Parser:
+    parser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+    parser.set_defaults(command=function)
+    return parser
+
+
+def _add_scenario(parser: _Parser) -> None:
+    parser.add_argument("scenario", metavar="SCENARIO", help="a bundled scenario or a YAML file")
+    parser.add_argument(
+        "--set", action="append", default=[], dest="settings", metavar="PATH=VALUE",
+        help="lay one value over the scenario, such as controller.kind=open_loop",
+    )  # fmt: skip
+
+
+def _run(options: Options) -> int:
+    from hilbed.commands import run
+
+    return run(options)
+
+
+def _sweep(options: Options) -> int:
+    from hilbed.sweep import sweep
+
+    return sweep(options.scenario, options.seeds, options.settings, options.jobs, options.json)
+
+
+def _list(_: Options) -> int:
+    from hilbed.commands import print_scenarios
+
+    return print_scenarios()
+
+
+def _check(options: Options) -> int:
+    from hilbed.scenario.load import load
+
+    loaded = load(options.scenario, options.settings)
+    print(f"{loaded.name}: valid", file=sys.stderr)
+    return 0
+
+
+def _report(options: Options) -> int:
+    from hilbed.report import write_report
+
+    print(write_report(options.folder))
+    return 0
+
+
+def _fit(options: Options) -> int:
+    from hilbed.fit import fit
+
+    print(fit(options.run, options.fraction), end="")
+    return 0
+
+
+def _bench(options: Options) -> int:
+    from hilbed.bench import bench
+
+    return bench(options.scenario)

@@ -1,0 +1,85 @@
+"""What `hilbed run` and `hilbed list` do: a run with its folder, its table and its report."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from hilbed import verdict
+from hilbed.clock import seconds
+from hilbed.console import Stop, end_progress, progress, stop_on_signal
+from hilbed.record.folder import RunFolder
+from hilbed.report import write_report
+from hilbed.runner import Outcome, Watch, perform
+from hilbed.scenario import bundled
+from hilbed.scenario.load import Loaded, load, version_warnings
+from hilbed.types import Cycle, HilbedError
+from hilbed.versions import versions
+
+
+def run(options: argparse.Namespace) -> int:
+    """Runs a scenario into its folder, prints the verdict and returns the exit status."""
+    level = [] if options.record is None else [f"record={options.record}"]
+    loaded = load(options.scenario, [*options.settings, *level], options.seed)
+    for warning in version_warnings(loaded.scenario, versions()):
+        print(f"warning: {warning}", file=sys.stderr)
+    folder = RunFolder(options.out or _default_folder(loaded), options.force)
+    with stop_on_signal() as stop:
+        outcome = perform(loaded, folder, _watch(loaded, stop))
+    report = _report(folder.path, loaded)
+    _tell(outcome, folder.path, report, options.json)
+    return outcome.status
+
+
+def _default_folder(loaded: Loaded) -> Path:
+    return Path("runs") / f"{loaded.name.replace('/', '-')}-{loaded.scenario.seed}"
+
+
+def _watch(loaded: Loaded, stop: Stop) -> Watch:
+    shown = -1
+
+    def cycle(cycle: Cycle) -> None:
+        nonlocal shown
+        second = int(seconds(cycle.t))
+        if second != shown:
+            shown = second
+            progress(f"{loaded.name}: {second} of {loaded.scenario.duration:g} s")
+
+    return Watch(lambda: stop.signal, cycle)
+
+
+def _report(folder: Path, loaded: Loaded) -> Path | None:
+    if loaded.scenario.record == "none":
+        return None
+    progress("writing the report")
+    try:
+        return write_report(folder)
+    except HilbedError as error:
+        print(f"no report: {error}", file=sys.stderr)
+        return None
+    finally:
+        end_progress()
+
+
+def _tell(outcome: Outcome, folder: Path, report: Path | None, as_json: bool) -> None:
+    if as_json:
+        print(json.dumps(outcome.verdict, indent=2))
+        return
+    print(verdict.table(outcome.verdict, colour=verdict.coloured(sys.stdout)))
+    print(f"report: {report}" if report else f"run: {folder}")
+
+
+def print_scenarios() -> int:
+    """Prints the bundled scenarios, one a line: name, robot, plant, estimator, controller, title."""
+    rows = [_row(name) for name in bundled.names()]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    for row in rows:
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+    return 0
+
+
+def _row(name: str) -> tuple[str, ...]:
+    summary = bundled.summary(name)
+    return name, *summary
