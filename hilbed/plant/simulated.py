@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
@@ -64,8 +64,8 @@ class Encoder(Protocol):
     def sample(self, angle: float) -> int: ...
 
 
-class Supply(Protocol):
-    def voltage(self, current: float, drop: float) -> float: ...
+Supply: TypeAlias = Callable[[float, float], float]
+"""Terminal voltage (V) of the shared supply for a current (A) and a drop (V)."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class SimulatedPlant:
 
     def idle(self, start: Nanos, end: Nanos) -> None:
         """Runs firmware and bus with the shafts at rest, as while the drives are booted."""
-        volts = pins.supply(self._supply.voltage(0.0, 0.0))
+        volts = pins.quarter_volts(self._supply(0.0, 0.0))
         for t in range(start, end, self._tick):
             for axis, angle in zip(self._axes, self._world.angles, strict=True):
                 axis.firmware.tick(t, axis.encoder.sample(angle), 0, volts)
@@ -153,12 +153,12 @@ class SimulatedPlant:
         begun = perf_counter()
         self._schedule.apply(t, world)
         drawn = sum([axis.train.supply_current for axis in self._axes])
-        volts = self._supply.voltage(drawn, effects.supply_drop)
-        volts_pin = pins.supply(volts)
+        volts = self._supply(drawn, effects.supply_drop)
+        volts_pin = pins.quarter_volts(volts)
         torques, duties = [], []
         for axis, angle, speed in zip(self._axes, world.angles, world.speeds, strict=True):
             firmware, train = axis.firmware, axis.train
-            duty = firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
+            duty = firmware.tick(t, axis.encoder.sample(angle), pins.milliamperes(train.current), volts_pin)
             if firmware.outbox:
                 axis.flush(t)
             torques.append(train.step(pins.duty(duty), firmware.bridge_enabled, volts, speed))

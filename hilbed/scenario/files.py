@@ -25,7 +25,9 @@ def resolve(name: str, folder: Path) -> Path:
 def _data_folder(name: str) -> Path:
     folder = os.environ.get("HILBED_DATA")
     if not folder:
-        raise ScenarioError(f"{name} needs the environment variable HILBED_DATA to name the folder of the data")
+        raise ScenarioError(
+            f"{name} needs the environment variable HILBED_DATA to name the folder of the data"
+        )
     return Path(folder)
 
 

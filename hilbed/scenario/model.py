@@ -14,7 +14,7 @@ from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec
 from hilbed.robots import RobotSpec
 from hilbed.sensors import SensorSpec
-from hilbed.spec import NonNegative, Positive, Spec
+from hilbed.spec import Positive, Spec
 
 
 def _word(value: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 from hilbed.scenario import yaml12
@@ -18,7 +19,7 @@ def apply(data: dict[str, Any], setting: str) -> yaml12.Path:
         raise ScenarioError(f"--set {setting}: give PATH=VALUE, such as duration=10 or sensors.camera.rate=5")
     path = tuple(int(step) if step.isdecimal() else step for step in dotted.split("."))
     inner: Any = data
-    for step, following in zip(path[:-1], path[1:], strict=True):
+    for step, following in pairwise(path):
         inner = _enter(inner, step, following, setting)
     _put(inner, path[-1], yaml12.value(text), setting)
     return path

@@ -75,7 +75,9 @@ def _message(item: dict[str, Any], model: type[BaseModel]) -> str:
         words = [word.strip("' ") for word in str(context["expected"]).replace(" or ", ", ").split(",")]
         return f"{key}: {given!r}{nearest(str(given), words)}"
     if kind == "value_error":
-        return f"{key}: {context.get('error', item['msg'])}" if key else str(context.get("error", item["msg"]))
+        return (
+            f"{key}: {context.get('error', item['msg'])}" if key else str(context.get("error", item["msg"]))
+        )
     return f"{key}: {item['msg'][0].lower()}{item['msg'][1:]}, given {shorten(given)}"
 
 

@@ -19,7 +19,7 @@ LARGEST = 1_000_000
 class _Loader(yaml.SafeLoader):
     """SafeLoader with the resolvers of the YAML 1.2 core schema and no duplicate keys."""
 
-    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012
+    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}
 
 
 def _integer(loader: _Loader, node: yaml.ScalarNode) -> int:
@@ -98,21 +98,23 @@ def read(text: str, name: str) -> tuple[dict[str, Any], Marks]:
         raise ScenarioError(f"{name}: {len(text)} characters, a scenario has at most {LARGEST}")
     try:
         root = yaml.compose(text, _Loader)
-        data = yaml.load(text, _Loader)  # noqa: S506 (a SafeLoader)
+        data = yaml.load(text, _Loader)
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise ScenarioError(f"{name}:{line}: {error.problem or 'not YAML'}") from None
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ScenarioError(f"{name}: not YAML: {error}") from None
     if not isinstance(data, dict):
-        raise ScenarioError(f"{name}:1: a scenario is a mapping of keys to values, this is {type(data).__name__}")
+        raise ScenarioError(
+            f"{name}:1: a scenario is a mapping of keys to values, this is {type(data).__name__}"
+        )
     return data, Marks(root)
 
 
 def value(text: str) -> Any:
     """Parses the VALUE of `--set PATH=VALUE`; raises ScenarioError."""
     try:
-        return yaml.load(text, _Loader)  # noqa: S506 (a SafeLoader)
+        return yaml.load(text, _Loader)
     except (yaml.YAMLError, ValueError) as error:
         raise ScenarioError(f"--set: {text!r} is not a YAML value: {error}") from None
 
@@ -120,7 +122,7 @@ def value(text: str) -> Any:
 class _Dumper(yaml.SafeDumper):
     """Writes what `_Loader` reads back: floats always with a point, so that 1e-05 stays a number."""
 
-    def ignore_aliases(self, data: Any) -> bool:
+    def ignore_aliases(self, _: Any) -> bool:
         return True
 
 
@@ -137,4 +139,4 @@ _Dumper.yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
 
 def write(data: dict[str, Any]) -> str:
     """Writes a mapping so that `read` gives it back."""
-    return str(yaml.dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=110))
+    return str(yaml.dump(data, Dumper=_Dumper, sort_keys=False, width=110))

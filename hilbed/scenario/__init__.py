@@ -1,0 +1,1 @@
+"""Scenarios: models with file:line errors, bundled files, and checks across the parts."""

@@ -1,0 +1,86 @@
+"""A mistake is answered with its place, what was given and the nearest valid word."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import pytest
+from pydantic import Field, ValidationError
+
+from hilbed.scenario import overlay, problems, yaml12
+from hilbed.spec import Positive, Spec
+from hilbed.types import ScenarioError
+
+
+class Circle(Spec):
+    kind: Literal["circle"] = "circle"
+    radius: Positive
+
+
+class Line(Spec):
+    kind: Literal["line"] = "line"
+    length: Positive = 1.0
+
+
+class Drawing(Spec):
+    shapes: list[Annotated[Circle | Line, Field(discriminator="kind")]] = []
+    named: dict[str, Line] = {}
+    scale: Positive = 1.0
+
+
+TEXT = """\
+scale: -1
+shapes:
+  - kind: circle
+    radios: 2
+  - kind: square
+  - {kind: line, length: long}
+named:
+  a: {lenght: 1}
+"""
+
+
+def tell(text: str, *settings: str) -> str:
+    data, marks = yaml12.read(text, "f.yaml")
+    places = problems.Places("f.yaml", marks)
+    for setting in settings:
+        places.overlaid(overlay.apply(data, setting), setting)
+    with pytest.raises(ValidationError) as caught:
+        Drawing.model_validate(data)
+    return places.tell(problems.from_validation(caught.value, Drawing))
+
+
+def test_every_problem_is_told_at_once_in_the_order_of_the_file() -> None:
+    assert tell(TEXT).splitlines() == [
+        "f.yaml:1: scale: input should be greater than 0, given -1",
+        "f.yaml:3: shapes.0.circle.radius is missing",
+        "f.yaml:4: unknown key 'radios'; did you mean 'radius'?",
+        "f.yaml:5: shapes.1: unknown kind 'square'; known: circle, line",
+        "f.yaml:6: shapes.2.line.length: input should be a valid number, "
+        "unable to parse string as a number, given 'long'",
+        "f.yaml:8: unknown key 'lenght'; did you mean 'length'?",
+    ]
+
+
+def test_a_value_that_was_laid_over_is_blamed_on_the_setting() -> None:
+    assert tell("scale: 1\n", "scale=0") == "--set scale=0: scale: input should be greater than 0, given 0"
+    assert tell("shapes: [{kind: line}]\n", "shapes.0.length=-2").startswith("--set shapes.0.length=-2: ")
+
+
+def test_settings_reach_into_lists_words_and_blocks_that_are_not_there() -> None:
+    data: dict[str, object] = {"estimator": "ekf", "items": [{"a": 1}]}
+    for setting in ("estimator.gate=null", "items.0.a=2", "new.block.x=[1, 2]"):
+        overlay.apply(data, setting)
+    assert data == {
+        "estimator": {"kind": "ekf", "gate": None},
+        "items": [{"a": 2}],
+        "new": {"block": {"x": [1, 2]}},
+    }
+
+
+@pytest.mark.parametrize(
+    "setting", ["seed", "=1", "seed.x=1", "items.3.a=1", "items.a=1", "items.7=1", "a=[1"]
+)
+def test_settings_that_lead_nowhere(setting: str) -> None:
+    with pytest.raises(ScenarioError, match="--set"):
+        overlay.apply({"seed": 1, "items": [{}]}, setting)
