@@ -1,0 +1,46 @@
+"""can.log: every frame of the bus in the format of `candump -L`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hilbed.clock import SECOND
+from hilbed.record.disk import GrowingFile
+from hilbed.record.row import Batch
+from hilbed.types import Nanos, Transfer
+
+
+class CandumpLog:
+    """A sink that writes `(seconds.microseconds) channel ID#DATA`, stamped with a frame's last bit.
+
+    Boot happens before t = 0 and the format knows no negative time, so the log's time is t + `offset`;
+    whole seconds keep it readable. On disk once a second of simulated time, whole lines only.
+    """
+
+    def __init__(self, path: Path, offset: Nanos = 0, channel: str = "hilbed") -> None:
+        self._file = GrowingFile(path)
+        self._offset = offset
+        self._channel = channel
+        self._flushed: Nanos = -offset
+
+    def take(self, batch: Batch) -> None:
+        offset, channel = self._offset, self._channel
+        if batch.transfers:
+            lines = [line(transfer, offset, channel) for transfer in batch.transfers]
+            self._file.write("".join(lines).encode())
+        if batch.row is not None and batch.row.cycle.t >= self._flushed + SECOND:
+            self._flushed = batch.row.cycle.t
+            self._file.flush()
+            self._file.check()
+
+    def close(self) -> None:
+        self._file.close()
+
+
+def line(transfer: Transfer, offset: Nanos, channel: str) -> str:
+    """Returns one line of the log; a frame that ended before −`offset` is stamped 0."""
+    seconds, rest = divmod(max(transfer.end + offset, 0), SECOND)
+    identifier, data, extended, remote = transfer.frame
+    name = f"{identifier:08X}" if extended else f"{identifier:03X}"
+    content = "R" if remote else data.hex().upper()
+    return f"({seconds}.{rest // 1000:06d}) {channel} {name}#{content}\n"

@@ -1,0 +1,177 @@
+"""Signals of a run as columns: collected row by row, handed over as arrays (the contract of signals.npz)."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Mapping
+from math import nan
+from typing import NamedTuple
+
+import numpy as np
+
+from hilbed.clock import MILLISECOND
+from hilbed.record.row import Batch, Row, Witnessed
+from hilbed.types import Array, Innovation, Nanos, Reading, Transfer
+
+_WIDTH = 24  # numbers a row: t, four poses, covariance, command
+_UNKNOWN = (nan, nan, nan)
+_NS = 1e-9
+
+
+class Readings(NamedTuple):
+    """Growing columns of one kind of reading; measured and true hold `size` numbers a reading."""
+
+    size: int
+    stamps: array[float]
+    beacons: array[int]
+    values: array[float]
+
+
+class Columns:
+    """A sink that keeps all signals in memory, about 400 bytes a cycle, and turns them into arrays.
+
+    drives: names, in the robot's order; kinds: what the sensors measure, each with its number of
+    components, {"azimuth": 1, "position": 2}, so that a kind that was never read still has its columns.
+    """
+
+    def __init__(self, drives: Iterable[str] = (), kinds: Mapping[str, int] | None = None) -> None:
+        self._rows = array("d")
+        self._drives = tuple(drives)
+        self._drive_rows = array("d")
+        self._readings = {kind: _empty(size) for kind, size in (kinds or {}).items()}
+        self._waiting: list[Witnessed] = []
+        self._innovations = array("d")
+        self._bus = array("d")
+
+    def take(self, batch: Batch) -> None:
+        if batch.transfers:
+            self._note_transfers(batch.transfers)
+        self._waiting += batch.readings
+        if batch.row is not None:
+            self._note_row(batch.row)
+
+    def close(self) -> None:
+        """Has nothing to close."""
+
+    def _note_row(self, row: Row) -> None:
+        (t, truth, odometry, _, estimate, command), reckoned, reference = row
+        extend = self._rows.extend
+        extend((t * _NS, *truth.pose, *reckoned, *reference, *command))
+        extend(estimate.mean.tolist()[:3])
+        for line in estimate.covariance.tolist()[:3]:
+            extend(line[:3])
+        for drive in self._drives:
+            self._drive_rows.extend(odometry.drives.get(drive, _UNKNOWN))
+        for innovation in estimate.innovations:
+            self._note_innovation(innovation)
+
+    def _note_innovation(self, innovation: Innovation) -> None:
+        t, nis, dof, accepted = innovation
+        self._innovations.extend((t * _NS, nis, dof, accepted))
+
+    def _note_transfers(self, transfers: Iterable[Transfer]) -> None:
+        extend = self._bus.extend
+        for queued, start, end, frame, _ in transfers:
+            extend((end * _NS, (end - queued) * _NS, (end - start) * _NS, frame.id))
+
+    def finish(
+        self, ticks: Mapping[str, Array] | None = None, tick: Nanos = MILLISECOND
+    ) -> dict[str, np.ndarray]:
+        """Returns every signal by its name in signals.npz; of an aborted run, what there was of it.
+
+        ticks: the plant's log, "tick/t" (M,) and "tick/drive/NAME/…" (M,), row k at time k·`tick` (ns).
+        A reading that was not delivered by the last row makes no row.
+        """
+        signals = _poses(np.array(self._rows).reshape(-1, _WIDTH))
+        t = signals["t"]
+        signals |= self._measured(len(t))
+        signals |= _plant(t, ticks or {}, tick * _NS)
+        signals |= self._read(t[-1] if len(t) else -np.inf)
+        if self._innovations or self._readings:
+            signals |= _table("nis", ("t", "value", "dof", "accepted"), self._innovations)
+            signals["nis/dof"] = signals["nis/dof"].astype(np.int64)
+            signals["nis/accepted"] = signals["nis/accepted"].astype(np.bool_)
+        if self._bus:
+            signals |= _table("bus", ("t", "latency", "duration", "id"), self._bus)
+            signals["bus/id"] = signals["bus/id"].astype(np.int64)
+        return signals
+
+    def _measured(self, count: int) -> dict[str, Array]:
+        rows = np.array(self._drive_rows).reshape(count, len(self._drives), 3)
+        signals = {}
+        for k, drive in enumerate(self._drives):
+            for column, name in enumerate(("speed_ref", "speed_measured", "current_measured")):
+                signals[f"drive/{drive}/{name}"] = rows[:, k, column].copy()
+        return signals
+
+    def _read(self, last: float) -> dict[str, np.ndarray]:
+        for witnessed in sorted(self._waiting, key=_delivery):
+            reading = witnessed.reading
+            if reading.delivered * _NS <= last:
+                kind = self._readings.setdefault(reading.kind, _empty(len(reading.value)))
+                kind.stamps.extend((reading.t * _NS, reading.delivered * _NS))
+                kind.beacons.append(witnessed.beacon)
+                kind.values.extend(_padded(reading.value, kind.size) + _padded(witnessed.true, kind.size))
+        self._waiting.clear()
+        return {
+            name: column
+            for kind, readings in self._readings.items()
+            for name, column in _columns_of(kind, readings).items()
+        }
+
+
+def _empty(size: int) -> Readings:
+    return Readings(size, array("d"), array("q"), array("d"))
+
+
+def _delivery(witnessed: Witnessed) -> tuple[Nanos, Nanos]:
+    reading: Reading = witnessed.reading
+    return reading.delivered, reading.t
+
+
+def _padded(value: tuple[float, ...], size: int) -> tuple[float, ...]:
+    """Returns `size` numbers: a spurious reading's truth may be told as a single NaN."""
+    return (*value, *[nan] * size)[:size]
+
+
+def _poses(rows: Array) -> dict[str, np.ndarray]:
+    columns = {
+        "t": rows[:, 0],
+        "truth": rows[:, 1:4],
+        "odometry": rows[:, 4:7],
+        "reference": rows[:, 7:10],
+        "command": rows[:, 10:12],
+        "estimate": rows[:, 12:15],
+        "covariance": rows[:, 15:24].reshape(-1, 3, 3),
+    }
+    return {name: np.ascontiguousarray(column) for name, column in columns.items()}
+
+
+def _plant(t: Array, ticks: Mapping[str, Array], tick: float) -> dict[str, np.ndarray]:
+    """Returns the tick log and, from it, the drives' rows at the cycles; NaN where the log ends early."""
+    signals: dict[str, np.ndarray] = {name: np.array(column, dtype=float) for name, column in ticks.items()}
+    index = np.rint(t / tick).astype(np.int64)
+    for name, column in ticks.items():
+        if name.startswith("tick/drive/") and len(column):
+            known = np.clip(index, 0, len(column) - 1)
+            signals[name.removeprefix("tick/")] = np.where(index < len(column), column[known], nan)
+    return signals
+
+
+def _columns_of(kind: str, readings: Readings) -> dict[str, np.ndarray]:
+    stamps = np.array(readings.stamps).reshape(-1, 2)
+    values = np.array(readings.values).reshape(-1, 2, readings.size)
+    if readings.size == 1:
+        values = values[:, :, 0]
+    return {
+        f"{kind}/t": stamps[:, 0].copy(),
+        f"{kind}/delivered": stamps[:, 1].copy(),
+        f"{kind}/beacon": np.array(readings.beacons, dtype=np.int64),
+        f"{kind}/measured": values[:, 0].copy(),
+        f"{kind}/true": values[:, 1].copy(),
+    }
+
+
+def _table(prefix: str, names: tuple[str, ...], numbers: array[float]) -> dict[str, np.ndarray]:
+    rows = np.array(numbers).reshape(-1, len(names))
+    return {f"{prefix}/{name}": rows[:, column].copy() for column, name in enumerate(names)}
