@@ -1,0 +1,105 @@
+"""Tracking by a linear-quadratic regulator of the error in the robot's frame."""
+
+from __future__ import annotations
+
+from math import copysign, cos, isfinite, sin
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from hilbed.angles import wrap
+from hilbed.clock import seconds
+from hilbed.ports import Reference
+from hilbed.spec import Positive, Spec
+from hilbed.types import Array, Command, Diverged, Estimate, Nanos, Pose
+
+Row = tuple[float, float, float]
+
+SLOWEST = 0.05  # m/s: an axle that stands cannot be steered aside, so gains are those of this speed
+GRID = 0.01  # m/s and rad/s: reference speeds are rounded to it before a gain is solved and kept
+
+
+class LqrSpec(Spec):
+    """Weights in Bryson's form: the error and the effort that are felt to be equally bad.
+
+    error: along m, across m, yaw rad; effort: speed m/s, yaw rate rad/s; max_speed m/s and max_turn_rate
+    rad/s limit the command. The defaults give Q = 400 I, R = 400 I.
+    """
+
+    kind: Literal["lqr"] = "lqr"
+    error: tuple[Positive, Positive, Positive] = (0.05, 0.05, 0.05)
+    effort: tuple[Positive, Positive] = (0.05, 0.05)
+    max_speed: Positive = 1.0
+    max_turn_rate: Annotated[float, Field(gt=0, le=20)] = 2.0
+
+
+def error_model(v: float, w: float) -> tuple[Array, Array]:
+    """Returns A (3, 3), B (3, 2) of ė = A e − B (dv, dw) at reference speeds v (m/s), w (rad/s).
+
+    Slimane et al. (2014), section on the controller, for the error in the robot's frame.
+    """
+    A = np.array([[0, w, 0], [-w, 0, v], [0, 0, 0]], dtype=float)
+    B = np.array([[1, 0], [0, 0], [0, 1]], dtype=float)
+    return A, B
+
+
+def solve_gain(v: float, w: float, period: float, Q: Array, R: Array) -> Array:
+    """Returns K (2, 3) of (dv, dw) = K e, held over a period (s), that minimises Σ eᵀQe + uᵀRu.
+
+    A and B are discretised exactly: exp([[A, B], [0, 0]] T).
+    """
+    from scipy.linalg import expm, solve_discrete_are
+
+    A, B = error_model(v, w)
+    block = np.zeros((5, 5))
+    block[:3, :3], block[:3, 3:] = A, B
+    held = expm(block * period)
+    Ad, Bd = held[:3, :3], held[:3, 3:]
+    P = solve_discrete_are(Ad, Bd, Q, R)
+    K: Array = np.linalg.solve(R + Bd.T @ P @ Bd, Bd.T @ P @ Ad)
+    return K
+
+
+def body_error(reference: Pose, robot: Pose) -> tuple[float, float, float]:
+    """Returns reference − robot in the robot's frame (m, m, rad)."""
+    c, s = cos(robot.yaw), sin(robot.yaw)
+    dx, dy = reference.x - robot.x, reference.y - robot.y
+    return c * dx + s * dy, c * dy - s * dx, wrap(reference.yaw - robot.yaw)
+
+
+class Lqr:
+    """v = v_r cos e_ψ + dv, w = w_r + dw with (dv, dw) = K(v_r, w_r) e, then limited."""
+
+    def __init__(self, spec: LqrSpec, reference: Reference, period: Nanos) -> None:
+        self._reference = reference
+        self._period = seconds(period)
+        self._Q = np.diag(np.power(spec.error, -2.0))
+        self._R = np.diag(np.power(spec.effort, -2.0))
+        self._limits = spec.max_speed, spec.max_turn_rate
+        self._gains: dict[tuple[int, int], tuple[Row, Row]] = {}
+
+    def step(self, t: Nanos, estimate: Estimate) -> Command:
+        """Returns the command for the period from `t`; raises Diverged if the estimate is not finite."""
+        x, y, yaw = estimate.mean.tolist()
+        if not isfinite(x + y + yaw):
+            raise Diverged(f"controller: the estimate is not finite at t = {seconds(t):.3f} s")
+        pose, v, w = self._reference.at(t)
+        ex, ey, turn = body_error(pose, Pose(x, y, yaw))
+        (vx, vy, vt), (wx, wy, wt) = self._gain(v, w)
+        return Command(
+            _limited(v * cos(turn) + vx * ex + vy * ey + vt * turn, self._limits[0]),
+            _limited(w + wx * ex + wy * ey + wt * turn, self._limits[1]),
+        )
+
+    def _gain(self, v: float, w: float) -> tuple[Row, Row]:
+        key = round(v / GRID), round(w / GRID)
+        if key not in self._gains:
+            near = copysign(max(abs(key[0] * GRID), SLOWEST), v)
+            K = solve_gain(near, key[1] * GRID, self._period, self._Q, self._R).tolist()
+            self._gains[key] = (K[0][0], K[0][1], K[0][2]), (K[1][0], K[1][1], K[1][2])
+        return self._gains[key]
+
+
+def _limited(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)
