@@ -1,0 +1,46 @@
+"""Which beacon's colour a pixel has: judged by hue, so that shading does not matter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from hilbed.scene import COLOURS
+from hilbed.vision.seams import Image
+
+Labels = npt.NDArray[np.uint8]
+
+BACKGROUND, OTHER = 0, 255
+HUES = 180  # OpenCV counts hue in steps of 2°
+NEAREST = 15.0 / 2.0  # half the distance between the hues of two beacons
+_GREY = (0, 100, 40)  # below this saturation or value a pixel has no colour
+
+
+class Palette:
+    """The colours to look for: label k + 1 belongs to the k-th of `colours`."""
+
+    def __init__(self, colours: Sequence[str]) -> None:
+        self.colours = tuple(dict.fromkeys(colours))
+        if len(self.colours) >= OTHER:
+            raise ValueError("more colours than labels")
+        self._labels = np.array([self._label(hue) for hue in range(256)], np.uint8)
+
+    def label(self, image: Image) -> Labels:
+        """Returns (H, W): BACKGROUND, the label of a colour, or OTHER for a colour that is none of them."""
+        hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV)
+        coloured = cv2.inRange(hsv, _GREY, (255, 255, 255))
+        labels = cv2.LUT(cv2.extractChannel(hsv, 0), self._labels)
+        return np.asarray(cv2.bitwise_and(labels, coloured), np.uint8)
+
+    def _label(self, hue: int) -> int:
+        distances = [abs((hue - _hue(colour) + HUES / 2) % HUES - HUES / 2) for colour in self.colours]
+        nearest = min(range(len(distances)), key=distances.__getitem__, default=-1)
+        return nearest + 1 if nearest >= 0 and distances[nearest] <= NEAREST else OTHER
+
+
+def _hue(colour: str) -> float:
+    pixel = np.array([[COLOURS[colour]]], np.float32)
+    return float(cv2.cvtColor(pixel, cv2.COLOR_RGB2HSV)[0, 0, 0]) / 2.0

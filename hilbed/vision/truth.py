@@ -1,0 +1,43 @@
+"""Where beacons really are, seen from the camera: for the witness, never for a detector."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, hypot
+from typing import NamedTuple
+
+from hilbed.angles import wrap
+from hilbed.scene import BeaconSpec
+
+SPURIOUS = -1
+_IN_LINE = 1e-5  # rad
+
+
+class Sight(NamedTuple):
+    """A beacon from the optical centre: azimuth of its axis (rad), distance (m), half its width (rad)."""
+
+    azimuth: float
+    distance: float
+    half_width: float
+
+
+def sights(beacons: Sequence[BeaconSpec], x: float, y: float, yaw: float) -> list[Sight]:
+    """Returns where each beacon is seen from an optical centre at x, y (m, map), relative to yaw (rad)."""
+    return [_sight(beacon, x, y, yaw) for beacon in beacons]
+
+
+def _sight(beacon: BeaconSpec, x: float, y: float, yaw: float) -> Sight:
+    dx, dy = beacon.at[0] - x, beacon.at[1] - y
+    distance = hypot(dx, dy)
+    return Sight(wrap(atan2(dy, dx) - yaw), distance, atan2(beacon.foot_radius, distance))
+
+
+def match(azimuth: float, seen: Sequence[Sight]) -> int:
+    """Returns the index of the beacon at which a noiseless azimuth (rad) points, SPURIOUS for none.
+
+    Azimuth and sights are in one frame. It is judged by geometry alone, so that a detector's wrong identity shows. Of two in line it is the nearer
+    one, which hides the other.
+    """
+    offsets = [abs(wrap(azimuth - sight.azimuth)) for sight in seen]
+    hit = [k for k, sight in enumerate(seen) if offsets[k] <= sight.half_width]
+    return min(hit, key=lambda k: (round(offsets[k] / _IN_LINE), seen[k].distance), default=SPURIOUS)
