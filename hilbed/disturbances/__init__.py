@@ -6,13 +6,13 @@ from hilbed.disturbances.schedule import Disturbance, Schedule
 from hilbed.disturbances.vision import CameraLoss, SpuriousAzimuths, camera_loss, spurious_azimuths
 
 DISTURBANCES = {
-    "load_torque": load_torque,
-    "slip_patch": slip_patch,
-    "wheel_radius": wheel_radius,
+    "load-torque": load_torque,
+    "slip-patch": slip_patch,
+    "wheel-radius": wheel_radius,
     "push": push,
-    "supply_sag": supply_sag,
-    "spurious_azimuths": spurious_azimuths,
-    "camera_loss": camera_loss,
+    "supply-sag": supply_sag,
+    "spurious-azimuths": spurious_azimuths,
+    "camera-loss": camera_loss,
 }
 
 DisturbanceSpec = LoadTorque | SlipPatch | WheelRadius | Push | SupplySag | SpuriousAzimuths | CameraLoss

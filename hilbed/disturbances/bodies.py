@@ -13,7 +13,7 @@ from hilbed.types import Nanos
 class SlipPatch(DisturbanceBase):
     """A rectangle on the ground, from corner to corner (m, map), with another coefficient of friction."""
 
-    kind: Literal["slip_patch"] = "slip_patch"
+    kind: Literal["slip-patch"] = "slip-patch"
     corner: Point
     opposite: Point
     friction: NonNegative
@@ -22,7 +22,7 @@ class SlipPatch(DisturbanceBase):
 class WheelRadius(DisturbanceBase):
     """A wheel whose rolling radius is `size` times the nominal one: odometry's systematic error."""
 
-    kind: Literal["wheel_radius"] = "wheel_radius"
+    kind: Literal["wheel-radius"] = "wheel-radius"
     drive: str
     size: Positive
 

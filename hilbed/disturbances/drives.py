@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
+
+from pydantic import model_validator
 
 from hilbed.clock import seconds
 from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
@@ -21,17 +23,24 @@ class LoadTorque(DisturbanceBase):
     `length`, 20 ms where none is given).
     """
 
-    kind: Literal["load_torque"] = "load_torque"
+    kind: Literal["load-torque"] = "load-torque"
     drive: str
     size: Finite
     shape: Literal["step", "ramp", "impulse"] = "step"
     rise: Positive = 1.0
 
+    @model_validator(mode="before")
+    @classmethod
+    def _impulse_is_short(cls, given: Any) -> Any:
+        if isinstance(given, dict) and given.get("shape") == "impulse":
+            return {"length": IMPULSE_LENGTH, **given}
+        return given
+
 
 class SupplySag(DisturbanceBase):
     """Takes `size` V off the supply's open-circuit voltage."""
 
-    kind: Literal["supply_sag"] = "supply_sag"
+    kind: Literal["supply-sag"] = "supply-sag"
     size: NonNegative
 
 

@@ -13,14 +13,14 @@ from hilbed.types import Nanos
 class SpuriousAzimuths(DisturbanceBase):
     """False azimuths: `size` of them in a frame on the average (Poisson)."""
 
-    kind: Literal["spurious_azimuths"] = "spurious_azimuths"
+    kind: Literal["spurious-azimuths"] = "spurious-azimuths"
     size: NonNegative
 
 
 class CameraLoss(DisturbanceBase):
     """The camera delivers no frames."""
 
-    kind: Literal["camera_loss"] = "camera_loss"
+    kind: Literal["camera-loss"] = "camera-loss"
 
 
 def spurious_azimuths(spec: SpuriousAzimuths, _: int) -> Disturbance:

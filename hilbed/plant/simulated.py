@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 import numpy as np
@@ -68,15 +67,21 @@ Supply: TypeAlias = Callable[[float, float], float]
 """Terminal voltage (V) of the shared supply for a current (A) and a drop (V)."""
 
 
-@dataclass(frozen=True)
+Attach: TypeAlias = Callable[[str, Callable[[Nanos, Frame], None]], Bus]
+"""Puts a node on the bus, by name and by what it does with a frame."""
+
+
 class Axis:
     """One drive from its node on the bus to its shaft."""
 
-    name: str
-    firmware: Drive
-    port: Bus
-    train: Train
-    encoder: Encoder
+    __slots__ = ("encoder", "firmware", "name", "port", "train")
+
+    def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
+        self.name = name
+        self.firmware = Drive(node)
+        self.train = train
+        self.encoder = encoder
+        self.port = attach(name, self.on_frame)
 
     def on_frame(self, t: Nanos, frame: Frame) -> None:
         """Hands a frame to the firmware and sends what it answers."""

@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from hilbed.spec import Positive, Spec
+from hilbed.spec import Finite, Positive, Spec
 from hilbed.types import Command
 
 
 class DiffDriveSpec(Spec):
-    """Nominal geometry, as the controller knows it: wheel radius and track in m; URDF of the body."""
+    """Nominal geometry, as the controller knows it: wheel radius and track in m; URDF of the body.
+
+    start: pose (m, m, rad) at t = 0, null for where the reference starts.
+    """
 
     kind: Literal["diffdrive"] = "diffdrive"
     wheel_radius: Positive = 0.1
     track: Positive = 0.4
     urdf: str = "package:urdf/diffdrive.urdf"
+    start: tuple[Finite, Finite, Finite] | None = None
 
 
 class DiffDrive:

@@ -1,0 +1,169 @@
+"""Checks that need more than one block of a scenario; each is asked if all blocks that it needs hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+from hilbed.can.load import periodic_load
+from hilbed.can.specs import BusSpec, NodeSpec, resolve
+from hilbed.clock import nanos, seconds
+from hilbed.control import ControllerSpec, ReferenceSpec
+from hilbed.criteria import METRICS, CriterionSpec
+from hilbed.disturbances import DisturbanceSpec
+from hilbed.estimation import EstimatorSpec
+from hilbed.plant import PlantSpec
+from hilbed.plant.recorded_spec import RecordedSpec
+from hilbed.plant.specs import SimulatedSpec
+from hilbed.robots import ROBOTS, RobotSpec
+from hilbed.scenario import files
+from hilbed.scenario.problems import Problem, nearest
+from hilbed.sensors import SensorSpec
+from hilbed.types import ScenarioError
+
+Problems = Iterator[Problem]
+
+
+def across(blocks: Mapping[str, Any], folder: Path) -> list[Problem]:
+    """Returns every problem between the blocks that hold by themselves."""
+    known = {**blocks, "folder": folder}
+    found: list[Problem] = []
+    for check in CHECKS:
+        needs = list(signature(check).parameters)
+        if all(need in known for need in needs):
+            found += check(*(known[need] for need in needs))
+    return found
+
+
+def _periods(duration: float, period: float) -> Problems:
+    if nanos(duration) % nanos(period):
+        yield Problem(
+            ("duration",), f"duration: {duration:g} s is not a multiple of the period, {period:g} s"
+        )
+
+
+def _ticks(period: float, plant: PlantSpec) -> Problems:
+    if not isinstance(plant, SimulatedSpec):
+        return
+    tick = nanos(plant.tick)
+    if nanos(period) % tick:
+        yield Problem(
+            ("period",), f"period: {period:g} s is not a multiple of the plant's tick, {plant.tick:g} s"
+        )
+    if nanos(plant.encoder.latency) % tick:
+        text = f"plant.encoder.latency: {plant.encoder.latency:g} s is not a multiple of the tick, {plant.tick:g} s"
+        yield Problem(("plant", "encoder", "latency"), text)
+
+
+def _nodes(robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec, period: float) -> Problems:
+    try:
+        resolved = resolve(nodes, ROBOTS[robot.kind].drives)
+    except ScenarioError as error:
+        yield from (Problem(("nodes",), line) for line in str(error).splitlines())
+        return
+    load = periodic_load(resolved, period, bus.bitrate)
+    if load > 1:
+        text = f"bus.bitrate: the periodic frames are {load:.0%} of a bus of {bus.bitrate} bit/s"
+        yield Problem(("bus", "bitrate"), f"{text}; a longer period or a higher bit rate would do")
+
+
+def _arena(plant: PlantSpec, reference: ReferenceSpec | None, robot: RobotSpec) -> Problems:
+    if not isinstance(plant, SimulatedSpec):
+        return
+    world = f"the world of ±{plant.arena:g} m"
+    for k, beacon in enumerate(plant.beacons):
+        if max(map(abs, beacon.at)) > plant.arena:
+            text = f"plant.beacons.{k}.at: {beacon.at} is outside {world}"
+            yield Problem(("plant", "beacons", k, "at"), text)
+    if robot.start is not None and max(map(abs, robot.start[:2])) > plant.arena:
+        yield Problem(("robot", "start"), f"robot.start: {robot.start} is outside {world}")
+    if reference is not None:
+        box = reference.path().extent()
+        if max(map(abs, box)) > plant.arena:
+            text = f"reference: the path reaches from {box[:2]} to {box[2:]}, outside {world}"
+            yield Problem(("reference",), text)
+
+
+def _files(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
+    wanted = []
+    if isinstance(plant, SimulatedSpec):
+        wanted.append((("robot", "urdf"), robot.urdf))
+    if isinstance(plant, RecordedSpec):
+        wanted.append((("plant", "file"), plant.file))
+    for path, name in wanted:
+        try:
+            files.resolve(name, folder)
+        except ScenarioError as error:
+            yield Problem(path, f"{'.'.join(path)}: {error}")
+
+
+def _food(estimator: EstimatorSpec, sensors: Mapping[str, SensorSpec], plant: PlantSpec) -> Problems:
+    """An estimator that corrects needs something to correct by."""
+    if estimator.kind != "ekf" or not isinstance(plant, SimulatedSpec):
+        return
+    if not sensors:
+        text = "estimator: ekf needs readings and there are no sensors; add one, or use the kind odometry"
+        yield Problem(("estimator",), text)
+    elif not plant.beacons:
+        text = "plant.beacons: the camera sees nothing without beacons, and ekf needs readings"
+        yield Problem(("plant", "beacons"), text)
+
+
+def _guidance(
+    controller: ControllerSpec | None, reference: ReferenceSpec | None, plant: PlantSpec
+) -> Problems:
+    if isinstance(plant, SimulatedSpec) and controller is None:
+        yield Problem(("controller",), "controller is missing")
+    if controller is not None and reference is None:
+        yield Problem(("reference",), f"reference is missing: the controller {controller.kind} follows one")
+
+
+def _recorded(
+    plant: PlantSpec, sensors: Mapping[str, SensorSpec], disturbances: list[DisturbanceSpec]
+) -> Problems:
+    """A recorded robot brings its own sensors, and what happened to it is over."""
+    if isinstance(plant, RecordedSpec):
+        for name in sensors:
+            yield Problem(
+                ("sensors", name), f"sensors.{name}: a recorded robot's readings come from its file"
+            )
+        for k in range(len(disturbances)):
+            yield Problem(("disturbances", k), f"disturbances.{k}: nothing can disturb a recorded robot")
+
+
+def _disturbed(
+    disturbances: list[DisturbanceSpec], robot: RobotSpec, sensors: Mapping[str, SensorSpec], duration: float
+) -> Problems:
+    drives = ROBOTS[robot.kind].drives
+    for k, disturbance in enumerate(disturbances):
+        place = f"disturbances.{k}"
+        drive = getattr(disturbance, "drive", None)
+        if drive is not None and drive not in drives:
+            text = f"{place}.drive: the robot has no drive {drive!r}{nearest(drive, drives)}"
+            yield Problem(("disturbances", k, "drive"), text)
+        if disturbance.start >= duration:
+            text = f"{place}.start: {disturbance.start:g} s is after the end of the run, {duration:g} s"
+            yield Problem(("disturbances", k, "start"), text)
+        if disturbance.kind in ("camera-loss", "spurious-azimuths") and not sensors:
+            yield Problem(
+                ("disturbances", k), f"{place}: {disturbance.kind} needs a camera among the sensors"
+            )
+
+
+def _judged(criteria: Mapping[str, CriterionSpec], duration: float, period: float) -> Problems:
+    for name, criterion in criteria.items():
+        metric = criterion.metric or name
+        bare = metric.partition(".")[2] or metric
+        if bare not in METRICS:
+            text = f"criteria.{name}: unknown metric {metric!r}{nearest(bare, list(METRICS))}"
+            yield Problem(("criteria", name), text)
+        if criterion.start is not None and criterion.start > duration - seconds(nanos(period)):
+            text = f"criteria.{name}.from: {criterion.start:g} s leaves nothing of a run of {duration:g} s"
+            yield Problem(("criteria", name, "from"), text)
+
+
+CHECKS: tuple[Callable[..., Problems], ...] = (
+    _periods, _ticks, _nodes, _arena, _files, _food, _guidance, _recorded, _disturbed, _judged,
+)  # fmt: skip
