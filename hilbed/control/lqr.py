@@ -57,8 +57,7 @@ def solve_gain(v: float, w: float, period: float, Q: Array, R: Array) -> Array:
     held = expm(block * period)
     Ad, Bd = held[:3, :3], held[:3, 3:]
     P = solve_discrete_are(Ad, Bd, Q, R)
-    K: Array = np.linalg.solve(R + Bd.T @ P @ Bd, Bd.T @ P @ Ad)
-    return K
+    return np.asarray(np.linalg.solve(R + Bd.T @ P @ Bd, Bd.T @ P @ Ad), dtype=np.float64)
 
 
 def body_error(reference: Pose, robot: Pose) -> tuple[float, float, float]:

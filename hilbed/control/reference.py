@@ -101,7 +101,7 @@ class StadiumSpec(_Reference):
 class FigureEightSpec(_Reference):
     """Two circles (radius m) that touch at a centre (m): the left one first, from there, at `yaw` (rad)."""
 
-    kind: Literal["figure-eight"]
+    kind: Literal["figure_eight"]
     centre: Point = (0.0, 0.0)
     radius: Positive = 1.5
     yaw: Finite = 0.0
@@ -164,6 +164,4 @@ def rounded(points: Sequence[Point], radius: float) -> list[Arc]:
     return [arc for arc in arcs if arc.length > 0]
 
 
-ReferenceSpec = Annotated[
-    LineSpec | CircleSpec | StadiumSpec | FigureEightSpec | WaypointsSpec, Field(discriminator="kind")
-]
+ReferenceSpec = LineSpec | CircleSpec | StadiumSpec | FigureEightSpec | WaypointsSpec

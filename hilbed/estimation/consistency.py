@@ -23,10 +23,10 @@ def nees(error: Array, covariance: Array) -> Array:
     NaN where either is not finite or a covariance is not positive definite.
     """
     values = np.full(len(error), np.nan)
-    finite = np.isfinite(error).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2))
-    finite[finite] = np.linalg.eigvalsh(covariance[finite]).min(axis=-1, initial=np.inf) > 0
-    solved = np.linalg.solve(covariance[finite], error[finite][..., None])[..., 0]
-    values[finite] = np.einsum("ni,ni->n", error[finite], solved)
+    finite = np.flatnonzero(np.isfinite(error).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2)))
+    sound = finite[np.linalg.eigvalsh(covariance[finite]).min(axis=1, initial=np.inf) > 0]
+    e = error[sound]
+    values[sound] = np.einsum("ni,ni->n", e, np.linalg.solve(covariance[sound], e[..., None])[..., 0])
     return values
 
 

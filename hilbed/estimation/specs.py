@@ -80,4 +80,4 @@ class DeadReckoningSpec(Spec):
     odometry: OdometrySpec = OdometrySpec()
 
 
-EstimatorSpec = Annotated[EkfSpec | DeadReckoningSpec, Field(discriminator="kind")]
+EstimatorSpec = EkfSpec | DeadReckoningSpec
