@@ -1,0 +1,110 @@
+"""One drive in operation: what it said last and what it is told, in raw units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import nan
+from typing import Any
+
+from hilbed.can.cia402 import ENABLE_OPERATION
+from hilbed.can.codec import limits
+from hilbed.can.node import Node
+from hilbed.types import DriveSignals, Frame, Nanos
+
+STATUS, VELOCITY, POSITION, CURRENT, UNUSED = range(5)
+_SLOTS = {
+    "statusword": STATUS,
+    "velocity_actual": VELOCITY,
+    "position_actual": POSITION,
+    "current_actual": CURRENT,
+}
+STATE_BITS = 0x6F
+"""Of the statusword: those that tell the states apart."""
+_ENABLED = 0x27  # what boot leaves behind
+
+Route = tuple["Axis", Callable[[bytes], tuple[Any, ...]], tuple[int, ...], bool]
+"""Where a TPDO goes: axis, how to unpack it, the slot of each of its values, whether a position is in it."""
+
+
+class Axis:
+    """State of one drive: `values` by slot, when it was heard, what it is told to do.
+
+    state: bits of the statusword that tell states apart; fresh: number of the SYNC that the last position
+    answered; position: raw, at the last complete set; heard: when its last PDO came.
+    """
+
+    __slots__ = (
+        "_amperes",
+        "_limits",
+        "_pack",
+        "_rpdo",
+        "_velocity",
+        "_word_first",
+        "controlword",
+        "fresh",
+        "heard",
+        "node",
+        "position",
+        "radians_per_count",
+        "silent",
+        "speed_ref",
+        "state",
+        "values",
+    )
+
+    def __init__(self, node: Node) -> None:
+        table = node.table
+        self.node = node
+        self.values: list[float] = [_ENABLED, nan, 0, nan, 0]
+        self.state = _ENABLED
+        self.fresh = 0
+        self.position: int | None = None
+        self.heard: Nanos = 0
+        self.silent = False
+        self.speed_ref = 0.0
+        self.controlword = ENABLE_OPERATION
+        self.radians_per_count = 1.0 / node.counts_per_radian
+        self._velocity = node.velocity_per_radian
+        self._amperes = table.units.rated_current * table.units.polarity / 1000.0
+        self._rpdo = table.pdos["rpdo1"].cob_id + node.id
+        self._limits = limits(table.objects["target_velocity"].type)
+        codec = table.codec("rpdo1")
+        self._pack = codec.pack
+        self._word_first = codec.names[0] == "controlword"
+
+    def routes(self) -> dict[int, Route]:
+        """Returns where each of the drive's TPDOs goes, by identifier."""
+        routes: dict[int, Route] = {}
+        for name, pdo in self.node.table.pdos.items():
+            if name[0] == "t":
+                codec = self.node.table.codec(name)
+                slots = tuple(_SLOTS.get(word, UNUSED) for word in codec.names)
+                routes[pdo.cob_id + self.node.id] = self, codec.unpack, slots, POSITION in slots
+        return routes
+
+    def target(self, speed: float) -> Frame:
+        """Returns the RPDO that asks for a speed (rad/s at the wheel), limited to what the object holds."""
+        low, high = self._limits
+        raw = min(max(round(speed * self._velocity), low), high)
+        self.speed_ref = speed
+        word = self.controlword
+        return Frame(self._rpdo, self._pack(word, raw) if self._word_first else self._pack(raw, word))
+
+    def turned(self) -> float:
+        """Returns the wheel's turn (rad) since the last complete set, across the wrap of 32 bits."""
+        position = int(self.values[POSITION])
+        before = position if self.position is None else self.position
+        self.position = position
+        return ((position - before + 0x80000000 & 0xFFFFFFFF) - 0x80000000) * self.radians_per_count
+
+    @property
+    def speed(self) -> float:
+        """Measured rad/s at the wheel, NaN until the first PDO."""
+        return self.values[VELOCITY] / self._velocity
+
+    def signals(self) -> DriveSignals:
+        """Returns the drive as the controller sees it now."""
+        values = self.values
+        return DriveSignals(
+            self.speed_ref, values[VELOCITY] / self._velocity, values[CURRENT] * self._amperes
+        )

@@ -1,0 +1,157 @@
+"""The robot behind a CAN bus: `ports.Base` that speaks CANopen to its drives.
+
+A cycle starts with SYNC: the drives latch what they measure and answer, and the targets of the cycle before
+act. Then the new targets go out. So what `read` returns was sampled at the last SYNC, a period ago, and a
+command acts a period after it was written: as on a real bus with synchronous PDOs.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from math import isfinite
+
+from hilbed.can import cia402, nmt
+from hilbed.can.axis import STATE_BITS, STATUS, Axis, Route
+from hilbed.can.cob import CONTROLLER_ID, SYNC_FRAME
+from hilbed.can.ears import Ears
+from hilbed.can.node import Node
+from hilbed.can.sdo import download_frame
+from hilbed.can.specs import BusSpec
+from hilbed.clock import MILLISECOND, nanos, seconds
+from hilbed.ports import Bus, Robot
+from hilbed.types import BusError, Command, Diverged, DriveSignals, Nanos, Odometry
+
+
+class CanBase:
+    """Drives that have been booted, read and written once a cycle.
+
+    nodes: in the order of the robot's drives. ears: what the drives said besides PDOs (`ears.events`),
+    frames that were ignored; silences: how often a drive went silent.
+    """
+
+    def __init__(self, robot: Robot, bus: Bus, nodes: Sequence[Node], spec: BusSpec) -> None:
+        self.silences = 0
+        self._robot = robot
+        self._bus = bus
+        self._axes = tuple(map(Axis, nodes))
+        self.ears = Ears(self._axes)
+        self._routes: dict[int, Route] = {}
+        for axis in self._axes:
+            self._routes |= axis.routes()
+        shortest = min((axis.node.table.heartbeat.controller for axis in self._axes), default=100)
+        self._alive = nmt.HeartbeatProducer(bus, CONTROLLER_ID, shortest * MILLISECOND)
+        self._patience = nanos(spec.silent_after)
+        self._on_silence = {"hold": self._hold, "quick_stop": self.stop, "fail": self._fail}[spec.silent]
+        self._syncs = 0
+        self._sync: Nanos | None = None
+        self._sync_before: Nanos | None = None
+        self._sampled: Nanos | None = None
+        self._rates = (0.0, 0.0)
+
+    def read(self, t: Nanos) -> Odometry:
+        """Returns what the drives measured at the last SYNC that all of them have answered.
+
+        Stamped with that SYNC's time (with `t` before the first); frames of any content are survived and
+        counted. BusError where a drive is silent and the policy is to fail.
+        """
+        routes, ears = self._routes, self.ears
+        for received in self._bus.recv(t):
+            at, (identifier, data, extended, remote) = received
+            route = routes.get(identifier)
+            if route is None or extended or remote:
+                ears.hear(received)
+                continue
+            axis, unpack, slots, positioned = route
+            try:
+                raw = unpack(data)
+            except struct.error:
+                ears.ignored += 1
+                continue
+            values = axis.values
+            for slot, value in zip(slots, raw, strict=True):
+                values[slot] = value
+            axis.heard = at
+            if positioned:
+                axis.fresh = self._syncs
+            if int(values[STATUS]) & STATE_BITS != axis.state:
+                ears.new_state(at, axis)
+        self._watch(t)
+        return self._odometry(t)
+
+    def write(self, t: Nanos, command: Command) -> None:
+        """Sends SYNC, a target to every drive, the heartbeat if due; Diverged if a command is not finite."""
+        if not (isfinite(command.v) and isfinite(command.w)):
+            raise Diverged(f"t = {seconds(t):g} s: the controller asked for {command}")
+        send = self._bus.send
+        send(t, SYNC_FRAME)
+        if self._sync is None:
+            for axis in self._axes:
+                axis.heard = t
+        self._sync, self._sync_before = t, self._sync
+        self._syncs += 1
+        for axis, speed in zip(self._axes, self._robot.wheel_speeds(command), strict=True):
+            send(t, axis.target(speed))
+        self._alive.tick(t)
+
+    def stop(self, t: Nanos) -> None:
+        """Tells every drive to stop quickly, at once and for good.
+
+        By SDO, which acts on arrival; and by PDO, so that the next SYNC finds no older order to go on.
+        """
+        for axis in self._axes:
+            axis.controlword = cia402.QUICK_STOP
+            entry = axis.node.table.objects["controlword"]
+            word = cia402.QUICK_STOP.to_bytes(2, "little")
+            self._bus.send(t, download_frame(axis.node.id, entry.index, entry.sub, word))
+            self._bus.send(t, axis.target(0.0))
+
+    @property
+    def faulted(self) -> tuple[str, ...]:
+        """Names of the drives whose last statusword says fault."""
+        faults = (cia402.FAULT, cia402.FAULT_REACTION)
+        return tuple(a.node.name for a in self._axes if cia402.state_of(int(a.values[STATUS])) in faults)
+
+    @property
+    def silent(self) -> tuple[str, ...]:
+        """Names of the drives that do not answer."""
+        return tuple(axis.node.name for axis in self._axes if axis.silent)
+
+    def _odometry(self, t: Nanos) -> Odometry:
+        distance = turn = 0.0
+        axes = self._axes
+        if self._syncs and all(axis.fresh == self._syncs for axis in axes):
+            distance, turn = self._robot.travel([axis.turned() for axis in axes])
+            self._sampled = self._sync
+        signals: dict[str, DriveSignals] = {axis.node.name: axis.signals() for axis in axes}
+        rates = self._robot.travel([signal.speed_measured for signal in signals.values()])
+        if isfinite(rates[0]):  # all drives have spoken
+            self._rates = rates
+        v, w = self._rates
+        return Odometry(t if self._sampled is None else self._sampled, distance, turn, v, w, signals)
+
+    def _watch(self, t: Nanos) -> None:
+        """Finds drives that have left two SYNCs unanswered for longer than allowed."""
+        before = self._sync_before
+        if before is None:
+            return
+        for axis in self._axes:
+            silent = axis.heard < before and t - axis.heard > self._patience
+            if silent == axis.silent:
+                continue
+            axis.silent = silent
+            if not silent:
+                self.ears.note(t, axis, "answers again")
+                continue
+            self.silences += 1
+            self.ears.note(t, axis, f"silent since {seconds(axis.heard):g} s")
+            self._on_silence(t)
+
+    def _hold(self, t: Nanos) -> None:
+        """Goes on with what was heard last."""
+
+    def _fail(self, t: Nanos) -> None:
+        silent = next(axis for axis in self._axes if axis.silent)
+        raise BusError(
+            f"t = {seconds(t):g} s: {silent.node} has been silent since {seconds(silent.heard):g} s"
+        )

@@ -1,0 +1,67 @@
+"""What is written to a drive at boot: its table, what follows from the period, what the scenario sets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hilbed.can.cob import CONTROLLER_ID
+from hilbed.can.codec import bit_length
+from hilbed.can.drive_table import DriveTable, Entry, Pdo
+from hilbed.can.node import Node
+from hilbed.clock import MILLISECOND, seconds
+from hilbed.types import Nanos
+
+_OFF, _NO_REMOTE = 1 << 31, 1 << 30
+_RECEIVE, _TRANSMIT, _MAPPING = 0x1400, 0x1800, 0x200
+
+Step = tuple[Entry, float]
+"""An object and the raw value that is written to it."""
+
+
+def steps(node: Node, period: Nanos) -> Iterator[Step]:
+    """Yields everything that is written to a drive before it is started, in order."""
+    table = node.table
+    yield from _heartbeat(table, period)
+    for write in table.writes:
+        yield write, write.value
+    for setting in table.period:
+        yield setting, setting.raw(seconds(period))
+    for key, value in node.settings.items():
+        setting = table.settings[key]
+        yield setting, setting.raw(value)
+    for name, pdo in table.pdos.items():
+        yield from _pdo(node, name, pdo)
+    yield table.objects["mode"], table.modes[node.mode]
+    yield table.objects["target_velocity"], 0
+
+
+def _heartbeat(table: DriveTable, period: Nanos) -> Iterator[Step]:
+    """The controller's heartbeat comes with its cycles, so a drive waits for three of them at least."""
+    patience = max(table.heartbeat.consumer, 3 * period // MILLISECOND)
+    yield Entry(index=0x1016, sub=1, type="u32"), CONTROLLER_ID << 16 | min(patience, 0xFFFF)
+    yield Entry(index=0x1017, type="u16"), table.heartbeat.drive
+
+
+def _pdo(node: Node, name: str, pdo: Pdo) -> Iterator[Step]:
+    """Switches a PDO off, describes it, switches it on (CiA 301)."""
+    number, sends = int(name[-1]) - 1, name[0] == "t"
+    index = (_TRANSMIT if sends else _RECEIVE) + number
+    identifier = pdo.cob_id + node.id | (_NO_REMOTE if sends else 0)
+    switch = Entry(index=index, sub=1, type="u32")
+    yield switch, identifier | _OFF
+    yield Entry(index=index, sub=2, type="u8"), pdo.transmission
+    if sends and pdo.transmission > 240:
+        yield Entry(index=index, sub=5, type="u16"), pdo.event_timer
+    if node.table.remappable:
+        yield from _mapping(node.table, index + _MAPPING, pdo)
+    yield switch, identifier
+
+
+def _mapping(table: DriveTable, index: int, pdo: Pdo) -> Iterator[Step]:
+    count = Entry(index=index, sub=0, type="u8")
+    yield count, 0
+    for sub, word in enumerate(pdo.map, start=1):
+        entry = table.objects[word]
+        mapped = entry.index << 16 | entry.sub << 8 | bit_length(entry.type)
+        yield Entry(index=index, sub=sub, type="u32"), mapped
+    yield count, len(pdo.map)

@@ -1,0 +1,126 @@
+"""Brings drives up over the bus as one brings up real ones: reset, identify, configure, start, enable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hilbed.can import cia402, configuration, emergency, nmt
+from hilbed.can.cob import CONTROLLER_ID
+from hilbed.can.link import Link, Pump
+from hilbed.can.node import Node
+from hilbed.can.sdo import SdoClient
+from hilbed.clock import MILLISECOND
+from hilbed.ports import Bus
+from hilbed.types import BusError, Nanos
+
+BOOT_UP_TIMEOUT: Nanos = 300 * MILLISECOND
+STATE_TIMEOUT: Nanos = 300 * MILLISECOND
+
+
+class Master:
+    """Boots drives that hang on one bus; the control period (ns) is that of SYNC."""
+
+    def __init__(self, nodes: Sequence[Node], bus: Bus, period: Nanos) -> None:
+        self._nodes = tuple(nodes)
+        self._bus = bus
+        self._period = period
+
+    def boot(self, pump: Pump, start: Nanos, ready: Nanos = 0) -> Nanos:
+        """Boots all drives from `start` on and keeps them company until `ready`; returns the time then.
+
+        BusError, with drive, object and what came back, where a drive is missing, is another one, refuses
+        an object or does not become enabled, or where all this takes until `ready`.
+        """
+        self._bus.recv(start)  # a boot-up from before the reset must not be taken for the one after it
+        link = Link(self._bus, pump, start, ready)
+        heard = nmt.HeartbeatConsumer()
+        link.listeners.append(heard.hear)
+        shortest = min((node.table.heartbeat.controller for node in self._nodes), default=100)
+        link.each_step.append(nmt.HeartbeatProducer(self._bus, CONTROLLER_ID, shortest * MILLISECOND).tick)
+        for node in self._nodes:
+            link.send(nmt.command(nmt.RESET_NODE, node.id))
+        for node in self._nodes:
+            _await_boot_up(link, heard, node)
+        for node in self._nodes:
+            self._bring_up(link, heard, node)
+        while link.t < ready:
+            link.step()
+        return link.t
+
+    def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> None:
+        sdo = SdoClient(link, node.name, node.id)
+        _identify(sdo, node)
+        for entry, value in configuration.steps(node, self._period):
+            sdo.write(entry.index, entry.sub, entry.type, value)
+        _await_mode(link, sdo, node)
+        link.send(nmt.command(nmt.START, node.id))
+        if not link.until(lambda: heard.states.get(node.id) == nmt.OPERATIONAL, STATE_TIMEOUT):
+            state = nmt.STATE_NAMES.get(heard.states.get(node.id, -1), "silent")
+            raise BusError(f"{node}: told to start, but its heartbeat (1017) says {state}")
+        _enable(link, sdo, node)
+
+
+def _await_boot_up(link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> None:
+    if not link.until(lambda: node.id in heard.boots, BOOT_UP_TIMEOUT):
+        raise BusError(
+            f"{node}: no boot-up message {0x700 + node.id:X} within {BOOT_UP_TIMEOUT // MILLISECOND} ms of "
+            "the NMT reset: is it powered and wired, with this node number and bit rate?"
+        )
+
+
+def _identify(sdo: SdoClient, node: Node) -> None:
+    """Checks that the drive is of the type whose table is going to be written to it."""
+    identity = node.table.identity
+    for index, sub, expected in (
+        (0x1000, 0, identity.device_type),
+        (0x1018, 1, identity.vendor),
+        (0x1018, 2, identity.product),
+    ):
+        found = sdo.read(index, sub, "u32")
+        if found != expected:
+            raise BusError(
+                f"{node} is no {node.table.name}: {index:04X}:{sub:02X} is {found:#x}, expected {expected:#x}"
+            )
+
+
+def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
+    """Waits until the drive shows the mode that it has been given."""
+    entry = node.table.objects.get("mode_display")
+    wanted = node.table.modes[node.mode]
+    if entry is None:
+        return
+    deadline = link.t + STATE_TIMEOUT
+    while (shown := sdo.read(entry.index, entry.sub, entry.type)) != wanted:
+        if link.t >= deadline:
+            raise BusError(f"{node}: mode {wanted} was written, {entry.index:04X} still shows {shown}")
+        link.step()
+
+
+def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
+    """Leads the drive to operation enabled, through a fault reset if need be."""
+    status, control = node.table.objects["statusword"], node.table.objects["controlword"]
+    deadline = link.t + STATE_TIMEOUT
+    while True:
+        statusword = sdo.read(status.index, status.sub, status.type)
+        state = cia402.state_of(statusword)
+        if state == cia402.ENABLED:
+            return
+        if link.t >= deadline:
+            raise BusError(
+                f"{node}: stays in {state} ({status.index:04X} = {statusword:#06x}){_why(sdo, node)}"
+            )
+        word = cia402.towards_enabled(state)
+        if word == cia402.FAULT_RESET:  # acts on its rising edge
+            sdo.write(control.index, control.sub, control.type, cia402.DISABLE_VOLTAGE)
+        if word is not None:
+            sdo.write(control.index, control.sub, control.type, word)
+        link.step()
+
+
+def _why(sdo: SdoClient, node: Node) -> str:
+    """Returns what the drive says about its fault, if it can say so."""
+    entry = node.table.objects.get("error_code")
+    if entry is None:
+        return ""
+    code = sdo.read(entry.index, entry.sub, entry.type)
+    return f", error code {code:#06x}: {emergency.meaning(code)}" if code else ""

@@ -1,0 +1,40 @@
+"""One drive on the bus as the controller knows it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from hilbed.can.drive_table import DriveTable
+
+
+@dataclass(frozen=True)
+class Node:
+    """A drive by name and node number, its type's table, and what the scenario sets.
+
+    settings: words and numbers by their key in the table's `settings`; mode: key of the table's `modes`.
+    """
+
+    name: str
+    id: int
+    table: DriveTable
+    mode: str = "csv"
+    settings: Mapping[str, float | str] = field(default_factory=dict)
+
+    @property
+    def counts_per_turn(self) -> float:
+        """Encoder counts a turn of the shaft that carries it."""
+        return float(self.settings.get("counts_per_turn", self.table.units.counts_per_turn))
+
+    @property
+    def counts_per_radian(self) -> float:
+        """Units of 6064 a radian of the wheel, negative where the drive is mounted mirrored."""
+        return self.table.units.position_scale(self.counts_per_turn)
+
+    @property
+    def velocity_per_radian(self) -> float:
+        """Units of 60FF and 606C a rad/s of the wheel, negative where the drive is mounted mirrored."""
+        return self.table.units.velocity_scale(self.counts_per_turn)
+
+    def __str__(self) -> str:
+        return f"drive {self.name} (node {self.id})"

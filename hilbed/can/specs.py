@@ -1,0 +1,119 @@
+"""Scenario blocks of the bus and of the drives on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from hilbed.can.drive_table import load_table
+from hilbed.can.node import Node
+from hilbed.spec import Finite, NonNegative, Positive, Spec
+from hilbed.types import ScenarioError
+
+BIT_RATES = (10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 800_000, 1_000_000)
+DEFAULT_IDS = {"left": 1, "right": 2, "traction": 1, "steering": 2}
+_LATER = ("ecu", "real")
+
+
+class BusSpec(Spec):
+    """The simulated wire: bit rate in bit/s, one of CiA's; what happens when a drive goes silent.
+
+    silent: hold (go on with what was heard last), quick_stop (of all drives) or fail (the run);
+    silent_after: s without a PDO of a drive.
+    """
+
+    kind: Literal["wire"] = "wire"
+    bitrate: int = 500_000
+    silent: Literal["hold", "quick_stop", "fail"] = "fail"
+    silent_after: Positive = 0.1
+
+    @field_validator("bitrate")
+    @classmethod
+    def _standard(cls, value: int) -> int:
+        if value not in BIT_RATES:
+            raise ValueError(f"no bit rate of CiA; there are {', '.join(map(str, BIT_RATES))}")
+        return value
+
+
+class NodeSpec(Spec):
+    """One drive; what is not given stays as the drive has it.
+
+    id: 1 to 126 (by default left 1, right 2); table: of the drive's type; loop: of the speed; mode: csv
+    (targets act at once) or pv (the drive ramps); counts_per_turn: of the encoder, at the wheel;
+    current_limit: A; slew: rad/s² at the wheel, 0 for none; gains: by the names of the table's settings,
+    such as kp, ki, slope.
+    """
+
+    kind: Literal["simulated"] = "simulated"
+    id: Annotated[int, Field(ge=1, le=126)] | None = None
+    table: str = "hilbed402"
+    loop: Literal["variable_structure", "pi", "relay"] = "variable_structure"
+    mode: Literal["csv", "pv"] = "csv"
+    counts_per_turn: Annotated[int, Field(ge=4, le=2**24)] | None = None
+    current_limit: Positive | None = None
+    slew: NonNegative | None = None
+    gains: dict[str, Finite] = Field(default_factory=dict)
+
+    @field_validator("kind", mode="before")
+    @classmethod
+    def _not_yet(cls, value: Any) -> Any:
+        if value in _LATER:
+            raise ValueError(f"{value!r} comes with the real bus; until then every node is 'simulated'")
+        return value
+
+    @field_validator("table")
+    @classmethod
+    def _bundled(cls, value: str) -> str:
+        try:
+            load_table(value)
+        except ScenarioError as error:
+            raise ValueError(str(error)) from None
+        return value
+
+    @model_validator(mode="after")
+    def _known(self) -> NodeSpec:
+        table = load_table(self.table)
+        known = [key for key in table.settings if key not in type(self).model_fields]
+        for key in self.gains:
+            if key not in known:
+                raise ValueError(f"gains: {self.table} has no {key!r}; it has {', '.join(known)}")
+        for key in self.settings():
+            if key not in table.settings:
+                raise ValueError(f"{self.table} has no setting {key!r}")
+        if self.mode not in table.modes:
+            raise ValueError(f"{self.table} has no mode {self.mode!r}")
+        return self
+
+    def settings(self) -> dict[str, float | str]:
+        """Returns what is to be set, by the keys of the table's settings."""
+        given: dict[str, float | str | None] = {
+            "loop": self.loop,
+            "counts_per_turn": self.counts_per_turn,
+            "current_limit": self.current_limit,
+            "slew": self.slew,
+            **self.gains,
+        }
+        return {key: value for key, value in given.items() if value is not None}
+
+
+def resolve(specs: Mapping[str, NodeSpec], drives: Iterable[str]) -> tuple[Node, ...]:
+    """Returns the nodes of a robot's drives in their order; ScenarioError with everything that is wrong.
+
+    A drive that the scenario does not mention is simulated with all defaults.
+    """
+    names = tuple(drives)
+    problems = [f"nodes: the robot has no drive {name!r}; it has {', '.join(names)}"
+                for name in specs if name not in names]  # fmt: skip
+    nodes: list[Node] = []
+    for place, name in enumerate(names, start=1):
+        spec = specs.get(name, NodeSpec())
+        number = spec.id or DEFAULT_IDS.get(name, place)
+        twin = next((node for node in nodes if node.id == number), None)
+        if twin is not None:
+            problems.append(f"nodes: {twin.name} and {name} have the same node number {number}")
+        nodes.append(Node(name, number, load_table(spec.table), spec.mode, spec.settings()))
+    if problems:
+        raise ScenarioError("\n".join(problems))
+    return tuple(nodes)
