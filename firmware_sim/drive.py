@@ -1,0 +1,61 @@
+"""One drive: a CANopen node and the axis behind it, fed with frames and ticks."""
+
+from __future__ import annotations
+
+from firmware_sim.axis import Axis
+from firmware_sim.dictionary import ObjectDictionary
+from firmware_sim.errors import Errors
+from firmware_sim.frame import AnyFrame, Frame
+from firmware_sim.node import Node
+
+
+class Drive:
+    """The firmware of one wheel: passive, without threads and without a clock of its own.
+
+    The owner calls `tick` every millisecond and `on_frame` for every frame on the bus, and after each
+    takes the frames to send out of `outbox`. Power comes with the first tick, which sends the boot-up
+    message. node: 1 to 127.
+    """
+
+    def __init__(self, node: int) -> None:
+        if not 1 <= node <= 127:
+            raise ValueError(f"a node's number is 1 to 127, not {node}")
+        dictionary = ObjectDictionary(node)
+        self._errors = Errors(dictionary.values)
+        self._axis = Axis(dictionary.values, self._errors)
+        self._node = Node(node, dictionary, self._errors, self._axis)
+        self.outbox: list[Frame] = self._node.outbox
+
+    def on_frame(self, t: int, frame: AnyFrame) -> None:
+        """Takes a frame off the bus at t (ns); whatever is in it, nothing is raised."""
+        self._node.receive(t, frame)
+
+    def tick(self, t: int, counts: int, current: int, supply: int) -> int:
+        """Runs the control period at t (ns) and returns the duty in Q15, −32767 … 32767.
+
+        What a microcontroller reads at its pins: encoder counts (I32, wrapping), motor current in mA
+        (I16), supply in quarters of a volt (U8).
+        """
+        node, axis = self._node, self._axis
+        if t >= node.due:
+            node.poll(t)
+        duty = axis.tick(counts, current, supply)
+        if axis.event or self._errors.pending:
+            axis.event = False
+            node.announce(t)
+        return duty
+
+    @property
+    def bridge_enabled(self) -> bool:
+        """False: the chopper is open and the wheel coasts."""
+        return self._axis.bridge_enabled
+
+    @property
+    def speed_ref(self) -> float:
+        """What the speed loop follows now, rad/s at the wheel in the encoder's direction; 0 when it rests."""
+        return self._axis.speed_ref
+
+    @property
+    def malformed(self) -> int:
+        """Frames for this node that were dropped for their length."""
+        return self._node.malformed

@@ -1,0 +1,43 @@
+"""Modes of operation: what each makes of the target. A new mode is a function and a row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from firmware_sim.cia402 import Ramp
+from firmware_sim.objects.profile import CYCLIC_VELOCITY, NO_MODE, PROFILE_VELOCITY
+from firmware_sim.settings import Settings
+
+
+class Plan(NamedTuple):
+    """Where the speed reference goes (rad/s) and how fast (rad/s a tick, growing and shrinking)."""
+
+    target: float
+    rise: float
+    fall: float
+
+
+def stopping(settings: Settings, ramp: Ramp) -> Plan:
+    """Returns the plan that ends at rest."""
+    fall = settings.falls[ramp]
+    return Plan(0.0, fall, fall)
+
+
+def _none(settings: Settings, _target: float) -> Plan:
+    return stopping(settings, Ramp.SLOW)
+
+
+def _profile_velocity(settings: Settings, target: float) -> Plan:
+    return Plan(target, settings.rise, settings.falls[Ramp.SLOW])
+
+
+def _cyclic_velocity(settings: Settings, target: float) -> Plan:
+    return Plan(target, settings.slew, settings.slew)
+
+
+MODES: dict[int, Callable[[Settings, float], Plan]] = {
+    NO_MODE: _none,
+    PROFILE_VELOCITY: _profile_velocity,
+    CYCLIC_VELOCITY: _cyclic_velocity,
+}
