@@ -1,0 +1,108 @@
+"""The verdict on a run: verdict.json (a contract) and a table for the terminal."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from math import inf, isfinite
+from typing import Any, NamedTuple, TextIO
+
+from hilbed.criteria import CriterionSpec, Judged, all_metrics, judge, window
+from hilbed.criteria.signals import Column
+
+
+class Account(NamedTuple):
+    """What the runner knows of a run besides its signals.
+
+    reason: why it ended before its time, else empty; sim_time, wall_time, cost: s.
+    """
+
+    scenario: str
+    seed: int
+    reason: str
+    sim_time: float
+    wall_time: float
+    cost: Mapping[str, float]
+    hash: str
+    signals_hash: str
+
+
+def conclude(
+    account: Account, signals: Mapping[str, Column], criteria: Mapping[str, CriterionSpec]
+) -> dict[str, Any]:
+    """Returns the content of verdict.json; a run that ended before its time does not pass.
+
+    Numbers that are not finite are None. Where criteria fail, `reason` names them.
+    """
+    judged = judge(signals, criteria)
+    failed = [f"{name}: {one.reason}" for name, one in judged.items() if not one.passed]
+    return {
+        "scenario": account.scenario,
+        "seed": account.seed,
+        "passed": not account.reason and not failed,
+        "reason": account.reason or "; ".join(failed),
+        "criteria": {name: _entry(one) for name, one in judged.items()},
+        "metrics": {name: _finite(value) for name, value in all_metrics(window(signals, 0.0, inf)).items()},
+        "sim_time": account.sim_time,
+        "wall_time": account.wall_time,
+        "real_time_factor": account.sim_time / account.wall_time if account.wall_time > 0 else None,
+        "cost": {part: _finite(value) for part, value in account.cost.items()},
+        "hash": account.hash,
+        "signals_hash": account.signals_hash,
+    }
+
+
+def text(content: Mapping[str, Any]) -> str:
+    """Returns a verdict as the text of verdict.json."""
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+def _entry(one: Judged) -> dict[str, Any]:
+    entry = {
+        "value": _finite(one.value), "limit": one.limit, "passed": one.passed, "bound": one.bound,
+    }  # fmt: skip
+    return entry if one.passed else entry | {"reason": one.reason}
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if isfinite(value) else None
+
+
+_RED, _GREEN, _BOLD, _PLAIN = "\x1b[31m", "\x1b[32m", "\x1b[1m", "\x1b[0m"
+
+
+def coloured(stream: TextIO) -> bool:
+    """Tells whether to colour what goes to a stream: a terminal, and NO_COLOR is not set."""
+    return stream.isatty() and not os.environ.get("NO_COLOR")
+
+
+def table(content: Mapping[str, Any], colour: bool = False) -> str:
+    """Returns a verdict as lines for a terminal: the criteria, then how the run went."""
+    rows = [_row(name, entry) for name, entry in content["criteria"].items()]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    passed = [entry["passed"] for entry in content["criteria"].values()]
+    lines = [_mark(line, good, colour) for line, good in zip(lines, passed, strict=True)]
+    return "\n".join([*lines, _summary(content, colour)])
+
+
+def _row(name: str, entry: Mapping[str, Any]) -> tuple[str, ...]:
+    sign = "≤" if entry["bound"] == "max" else "≥"
+    value = "none" if entry["value"] is None else f"{entry['value']:.4g}"
+    return name, value, f"{sign} {entry['limit']:.4g}", "pass" if entry["passed"] else "FAIL"
+
+
+def _mark(line: str, good: bool, colour: bool) -> str:
+    head, word = line.rstrip()[:-4], line.rstrip()[-4:]
+    return f"{head}{_GREEN if good else _RED}{word}{_PLAIN}" if colour else head + word
+
+
+def _summary(content: Mapping[str, Any], colour: bool) -> str:
+    word = "passed" if content["passed"] else "FAILED"
+    if colour:
+        word = f"{_BOLD}{_GREEN if content['passed'] else _RED}{word}{_PLAIN}"
+    factor = content["real_time_factor"]
+    speed = f", {factor:.1f} times real time" if factor else ""
+    line = f"{content['scenario']} seed {content['seed']}: {word}, {content['sim_time']:g} s simulated{speed}"
+    return line + (f"\n{content['reason']}" if content["reason"] else "")
