@@ -1,0 +1,121 @@
+"""The robot's body: a URDF read, checked, and instantiated for the geometry that a scenario states."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+from hilbed.types import ScenarioError
+
+Element = ElementTree.Element
+
+
+class Body(NamedTuple):
+    """A robot ready for the physics.
+
+    text: URDF; joints: names of the wheel joints in the order of the drives; radius, track: m.
+    """
+
+    text: str
+    joints: tuple[str, ...]
+    radius: float
+    track: float
+
+
+def read_urdf(path: Path) -> Element:
+    """Reads a URDF; raises ScenarioError with the line where it is no XML."""
+    try:
+        root = ElementTree.parse(path).getroot()
+    except OSError as error:
+        raise ScenarioError(f"{path}: {error.strerror or error}") from None
+    except ElementTree.ParseError as error:
+        line, column = error.position
+        raise ScenarioError(
+            f"{path}:{line}: not XML: {error.msg.split(':')[0]}, column {column + 1}"
+        ) from None
+    if root.tag != "robot":
+        raise ScenarioError(f"{path}: the outermost element is <{root.tag}>, a URDF has <robot>")
+    return root
+
+
+def diffdrive(path: Path, radius: float, track: float) -> Body:
+    """Instantiates the two-wheel robot of a URDF with another wheel radius and track (m).
+
+    base_link lies on the ground below the midpoint of the axle. Wheels move to ±track/2 and to the height of
+    their radius, their shapes and inertia scale with it. Raises ScenarioError.
+    """
+    root = read_urdf(path)
+    joints = ("left_wheel_joint", "right_wheel_joint")
+    for name, side in zip(joints, (0.5, -0.5), strict=True):
+        joint, wheel = _wheel(path, root, name, joints)
+        joint.find("origin").set("xyz", f"0 {side * track!r} {radius!r}")  # type: ignore[union-attr]
+        _scale_wheel(path, wheel, radius)
+    _drop_frames(root)
+    return Body(ElementTree.tostring(root, encoding="unicode"), joints, radius, track)
+
+
+def _wheel(path: Path, root: Element, name: str, wanted: tuple[str, ...]) -> tuple[Element, Element]:
+    """Returns a wheel's joint and link, complete enough to be scaled."""
+    joints = {joint.get("name"): joint for joint in root.iter("joint")}
+    if missing := [joint for joint in wanted if joint not in joints]:
+        found = ", ".join(sorted(str(joint) for joint in joints)) or "none"
+        raise ScenarioError(f"{path}: no joint {' and no joint '.join(missing)}; it has: {found}")
+    joint = joints[name]
+    if joint.get("type") != "continuous":
+        raise ScenarioError(f"{path}: joint {name} is {joint.get('type')}, a wheel's is continuous")
+    if joint.find("origin") is None:
+        raise ScenarioError(f"{path}: joint {name} has no <origin>")
+    child = joint.find("child")
+    link = None if child is None else root.find(f"link[@name='{child.get('link')}']")
+    if link is None:
+        raise ScenarioError(f"{path}: joint {name} has no child link")
+    return joint, link
+
+
+def _scale_wheel(path: Path, wheel: Element, radius: float) -> None:
+    """Takes a wheel to another radius: every radius in proportion, inertia with its square at equal mass."""
+    tread = wheel.find("collision/geometry/sphere")
+    if tread is None:
+        shape = wheel.find("collision/geometry/*")
+        was = "nothing" if shape is None else f"<{shape.tag}>"
+        raise ScenarioError(f"{path}: {wheel.get('name')} collides as {was}; wheels roll as a <sphere>")
+    inertia = wheel.find("inertial/inertia")
+    if inertia is None:
+        raise ScenarioError(f"{path}: {wheel.get('name')} has no <inertial> with mass and inertia")
+    factor = radius / _number(path, tread, "radius")
+    for shape in wheel.iterfind(".//geometry/*[@radius]"):
+        shape.set("radius", repr(_number(path, shape, "radius") * factor))
+    for box in wheel.iterfind(".//geometry/box"):
+        box.set("size", " ".join(repr(float(side) * factor) for side in box.get("size", "").split()))
+    for axis in ("ixx", "iyy", "izz"):
+        inertia.set(axis, repr(_number(path, inertia, axis) * factor**2))
+
+
+def _number(path: Path, element: Element, key: str) -> float:
+    text = element.get(key, "nothing")
+    try:
+        return float(text)
+    except ValueError:
+        raise ScenarioError(f"{path}: <{element.tag} {key}>: {text} is not a number") from None
+
+
+def _drop_frames(root: Element) -> None:
+    """Takes out links without inertia, from the tips inward: PyBullet would give each of them 1 kg."""
+    while True:
+        parents = {parent.get("link") for parent in root.iterfind("joint/parent")}
+        tips = [
+            link
+            for link in root.iterfind("link")
+            if link.find("inertial") is None and link.get("name") not in parents
+        ]
+        joints = [joint for joint in root.iterfind("joint") if _leads_to(joint, tips)]
+        if not joints:
+            return
+        for element in tips + joints:
+            root.remove(element)
+
+
+def _leads_to(joint: Element, links: list[Element]) -> bool:
+    child = joint.find("child")
+    return child is not None and child.get("link") in {link.get("name") for link in links}
