@@ -35,8 +35,8 @@ def _sight(beacon: BeaconSpec, x: float, y: float, yaw: float) -> Sight:
 def match(azimuth: float, seen: Sequence[Sight]) -> int:
     """Returns the index of the beacon at which a noiseless azimuth (rad) points, SPURIOUS for none.
 
-    Azimuth and sights are in one frame. It is judged by geometry alone, so that a detector's wrong identity shows. Of two in line it is the nearer
-    one, which hides the other.
+    Azimuth and sights are in one frame. It is judged by geometry alone, so that a detector's wrong identity
+    shows. Of two in line it is the nearer one, which hides the other.
     """
     offsets = [abs(wrap(azimuth - sight.azimuth)) for sight in seen]
     hit = [k for k, sight in enumerate(seen) if offsets[k] <= sight.half_width]

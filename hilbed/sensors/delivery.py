@@ -1,0 +1,61 @@
+"""From exposure to the controller: sample rate, latency and loss, the same for every sensor."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from hilbed.clock import SECOND, nanos
+from hilbed.spec import Fraction, NonNegative, Spec
+from hilbed.types import Nanos, Reading
+
+
+class DeliverySpec(Spec):
+    """How a sensor's samples come to the controller.
+
+    rate: samples a second, above 0 and at most 1000 Hz, the first one at t = 0; latency: s from exposure to
+    delivery, at most 10; loss: probability that a whole sample never arrives.
+    """
+
+    rate: Annotated[float, Field(gt=0, le=1000)] = 10.0
+    latency: Annotated[NonNegative, Field(le=10)] = 0.05
+    loss: Fraction = 0.0
+
+
+class Delivery:
+    """The clock of one sensor and the readings that are on their way."""
+
+    def __init__(self, spec: DeliverySpec, rng: np.random.Generator) -> None:
+        self._rate, self._latency, self._loss = spec.rate, nanos(spec.latency), spec.loss
+        self._rng = rng
+        self._count = 0
+        self._waiting: deque[Reading] = deque()
+
+    @property
+    def due(self) -> Nanos:
+        """When the next sample is to be taken."""
+        return round(self._count * SECOND / self._rate)
+
+    def expose(self, t: Nanos) -> Nanos:
+        """Notes a sample taken at t, makes the next one due, and returns when this one is delivered."""
+        while self.due <= t:
+            self._count += 1
+        return t + self._latency
+
+    def put(self, readings: Iterable[Reading]) -> bool:
+        """Sends the readings of one sample on their way and returns whether they will arrive."""
+        if self._loss and self._rng.random() < self._loss:
+            return False
+        self._waiting.extend(readings)
+        return True
+
+    def read(self, t: Nanos) -> list[Reading]:
+        """Returns what has been delivered up to and including t since the last call, oldest first."""
+        waiting, arrived = self._waiting, []
+        while waiting and waiting[0].delivered <= t:
+            arrived.append(waiting.popleft())
+        return arrived
