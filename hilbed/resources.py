@@ -10,8 +10,11 @@ from hilbed.types import ScenarioError
 def package_file(name: str) -> Path:
     """Returns the path of a file of the package such as "urdf/diffdrive.urdf"; raises ScenarioError."""
     package = Path(__file__).resolve().parent
-    for folder in (package, package.parent):
-        path = (folder / name).resolve()
-        if path.is_file() and path.is_relative_to(folder):
+    roots = [package]
+    if name.startswith("urdf/"):
+        roots.append(package.parent)
+    for root in roots:
+        path = (root / name).resolve()
+        if path.is_file() and path.is_relative_to(root):
             return path
     raise ScenarioError(f"package:{name}: no such file in the package")

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from hilbed import loop, verdict
-from hilbed.build import Bench, build
+from hilbed.build import BOOT, Bench, build
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.record.columns import Columns
@@ -22,43 +21,62 @@ from hilbed.record.disk import RecordError
 from hilbed.record.folder import RunFolder
 from hilbed.record.hashing import BusDigest, run_hash, signals_hash
 from hilbed.record.journal import Journal
-from hilbed.scenario.load import Loaded
+from hilbed.record.notes import Notes
+from hilbed.record.row import Sink
+from hilbed.scenario import yaml12
+from hilbed.scenario.load import Loaded, resolved
 from hilbed.types import BusError, Cycle, Diverged, Nanos
+from hilbed.versions import versions
 
 PASSED, FAILED, INTERRUPTED, BROKEN, BUS = 0, 1, 2, 3, 7
 
-Signals = dict[str, np.ndarray[Any, Any]]
+PATH_STEP: Nanos = 200_000_000
+"""How often the reference path is drawn into the log."""
 
 
 class Outcome(NamedTuple):
-    """How a run ended: exit status, the content of verdict.json, its signals."""
+    """How a run ended: exit status, the content of verdict.json, the traceback of an internal error."""
 
     status: int
     verdict: Mapping[str, Any]
-    signals: Signals
+    trace: str
 
 
-@dataclass
+@dataclass(frozen=True)
 class Watch:
-    """What the outside may do with a run: ask it to stop, follow its cycles."""
+    """What the outside may do with a run: ask it to stop (a word why, or None), follow its cycles."""
 
     stop: Callable[[], str | None] = lambda: None
     cycle: Callable[[Cycle], None] = lambda _: None
 
 
-@dataclass
 class _Ending:
-    """Why a run ended before its time; nothing is wrong while `status` is PASSED."""
+    """How a run ends; the first thing that goes wrong is the cause, what follows from it is not told."""
 
-    status: int = PASSED
-    reason: str = ""
-    trace: str = ""
-    wall: float = 0.0
-    last: Nanos = field(default=0)
+    def __init__(self) -> None:
+        self.status = PASSED
+        self.reason = ""
+        self.trace = ""
+        self.wall = 0.0
+        self.last: Nanos = 0
 
     def set(self, status: int, reason: str, trace: str = "") -> None:
-        if self.status == PASSED:  # the first reason is the cause
+        if self.status == PASSED:
             self.status, self.reason, self.trace = status, reason, trace
+
+    def attempt(self, step: Callable[[], object]) -> None:
+        """Does a step of the run; an error ends the run with its own status instead of a traceback."""
+        try:
+            step()
+        except (Diverged, RecordError) as error:
+            self.set(BROKEN, str(error))
+        except BusError as error:
+            self.set(BUS, str(error))
+        except KeyboardInterrupt:
+            self.set(INTERRUPTED, f"SIGINT at t = {seconds(self.last):.3f} s")
+        except Exception as error:
+            place = f"after t = {seconds(self.last):.3f} s"
+            self.set(BROKEN, f"internal error {place}: {error!r}", traceback.format_exc())
 
 
 def perform(loaded: Loaded, folder: RunFolder | None, watch: Watch | None = None) -> Outcome:
@@ -66,57 +84,98 @@ def perform(loaded: Loaded, folder: RunFolder | None, watch: Watch | None = None
 
     Raises ScenarioError for what is found before the first cycle, when nothing has been written yet.
     """
-    scenario, cost, ending = loaded.scenario, Cost(), _Ending()
-    signals_sink, bus_sink = Columns(drives_of(scenario), kinds_of(scenario)), BusDigest()
-    journal = Journal([signals_sink, bus_sink], cost, *origin(loaded))
-    bench = build(loaded, journal, cost)
+    cost, notes, ending = Cost(), Notes(), _Ending()
+    bench = build(loaded, notes, cost)
+    columns, bus = Columns(bench.drives, bench.kinds), BusDigest()
     try:
-        if folder is not None:
-            _open_logs(journal, folder, loaded)
-        _run(bench, journal, nanos(scenario.duration), watch or Watch(), ending)
+        sinks = [] if folder is None else _logs(bench, loaded, folder)
+        journal = Journal(notes, [columns, bus, *sinks], cost, bench.start, bench.reference)
+        _run(bench, journal, nanos(loaded.scenario.duration), watch or Watch(), ending)
     finally:
         bench.close()
-    _attempt(ending, journal.close)
-    signals = signals_sink.finish(bench.ticks(0), bench.tick)
-    return _judge(loaded, signals, bus_sink.digest(), cost, ending, folder)
+    signals = columns.finish(bench.ticks(0), bench.tick)
+    content = _judge(loaded, signals, bus.digest(), cost, ending)
+    if folder is not None:
+        ending.attempt(lambda: _write(folder, loaded, signals, content))
+    return Outcome(_status(content, ending), content, ending.trace)
+
+
+def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:
+    """Starts the run folder and returns the logs that the scenario wants in it."""
+    path = folder.start()
+    text = yaml12.write(resolved(loaded.scenario, versions()))
+    folder.write("scenario.yaml", text)
+    if loaded.scenario.record != "all":
+        return []
+    from hilbed.record.candump import CandumpLog
+    from hilbed.record.frames import Frames
+    from hilbed.record.mcap import McapLog, Setting
+
+    setting = Setting(bench.beacons, _path(bench, loaded), 0.2, loaded.scenario.disturbances, text)
+    sinks: list[Sink] = [McapLog(path / "log.mcap", BOOT, setting), Frames(path / "frames")]
+    return [CandumpLog(path / "can.log", BOOT), *sinks] if bench.drives else sinks
+
+
+def _path(bench: Bench, loaded: Loaded) -> list[tuple[float, float]]:
+    if bench.reference is None:
+        return []
+    times = range(0, nanos(loaded.scenario.duration), PATH_STEP)
+    return [bench.reference.at(t).pose[:2] for t in times]
 
 
 def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: _Ending) -> None:
     """Boots, runs and stops; what goes wrong is kept in `ending`."""
-    _attempt(ending, bench.boot)
+    ending.attempt(bench.boot)
     if ending.status == PASSED:
         start = perf_counter()
-        _attempt(ending, lambda: _cycles(bench, journal, duration, watch, ending))
+        ending.attempt(lambda: _cycles(bench, journal, duration, watch, ending))
         ending.wall = perf_counter() - start
-    _attempt(ending, lambda: bench.stop(ending.last))
+    ending.attempt(lambda: bench.stop(ending.last))
+    ending.attempt(journal.close)
 
 
 def _cycles(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: _Ending) -> None:
     logged = 0
     for cycle in loop.run(bench.rig, duration):
-        journal.record(cycle)
-        ending.last = cycle.t
-        watch.cycle(cycle)
         if cycle.t % SECOND == 0:
             rows = bench.ticks(logged)
             logged += len(rows.get("tick/t", ()))
             journal.ticks(rows)
-        signal = watch.stop()
-        if signal is not None:
-            ending.set(INTERRUPTED, f"{signal} at t = {seconds(cycle.t):.3f} s")
+        journal.record(cycle)
+        ending.last = cycle.t
+        watch.cycle(cycle)
+        asked = watch.stop()
+        if asked is not None:
+            ending.set(INTERRUPTED, f"{asked} at t = {seconds(cycle.t):.3f} s")
             return
 
 
-def _attempt(ending: _Ending, step: Callable[[], None]) -> None:
-    """Runs a step of the run; an error ends the run with its own status instead of a traceback."""
-    when = f"t = {seconds(ending.last):.3f} s"
-    try:
-        step()
-    except (Diverged, RecordError) as error:
-        ending.set(BROKEN, str(error))
-    except BusError as error:
-        ending.set(BUS, str(error))
-    except KeyboardInterrupt:
-        ending.set(INTERRUPTED, f"SIGINT after {when}")
-    except Exception as error:
-        ending.set(BROKEN, f"internal error after {when}: {error!r}", traceback.format_exc())
+def _judge(
+    loaded: Loaded, signals: dict[str, np.ndarray[Any, Any]], bus: bytes, cost: Cost, ending: _Ending
+) -> dict[str, Any]:
+    scenario = loaded.scenario
+    account = verdict.Account(
+        loaded.name,
+        scenario.seed,
+        ending.reason,
+        seconds(ending.last),
+        ending.wall,
+        cost.as_dict(),
+        run_hash(signals, bus),
+        signals_hash(signals),
+    )
+    return verdict.conclude(account, signals, scenario.criteria)
+
+
+def _write(
+    folder: RunFolder, loaded: Loaded, signals: dict[str, np.ndarray[Any, Any]], content: dict[str, Any]
+) -> None:
+    folder.write("verdict.json", verdict.text(content))
+    if loaded.scenario.record != "none":
+        folder.write_signals(signals)
+
+
+def _status(content: Mapping[str, Any], ending: _Ending) -> int:
+    if ending.status != PASSED:
+        return ending.status
+    return PASSED if content["passed"] else FAILED

@@ -22,9 +22,9 @@ SIGNALS = ("speed", "current", "slip", "load_torque", "torque", "speed_ref", "du
 class World(Protocol):
     """Moves the robot by the torques at its wheels; lists are in the order of the drives."""
 
-    angles: Sequence[float]
-    speeds: Sequence[float]
-    slips: Sequence[float]
+    angles: list[float]
+    speeds: list[float]
+    slips: list[float]
 
     @property
     def pose(self) -> Pose: ...
@@ -63,8 +63,8 @@ class Encoder(Protocol):
     def sample(self, angle: float) -> int: ...
 
 
-Supply: TypeAlias = Callable[[float, float], float]
-"""Terminal voltage (V) of the shared supply for a current (A) and a drop (V)."""
+class Supply(Protocol):
+    def voltage(self, current: float, drop: float) -> float: ...
 
 
 Attach: TypeAlias = Callable[[str, Callable[[Nanos, Frame], None]], Bus]
@@ -133,7 +133,7 @@ class SimulatedPlant:
 
     def idle(self, start: Nanos, end: Nanos) -> None:
         """Runs firmware and bus with the shafts at rest, as while the drives are booted."""
-        volts = pins.quarter_volts(self._supply(0.0, 0.0))
+        volts = pins.supply(self._supply.voltage(0.0, 0.0))
         for t in range(start, end, self._tick):
             for axis, angle in zip(self._axes, self._world.angles, strict=True):
                 axis.firmware.tick(t, axis.encoder.sample(angle), 0, volts)
@@ -158,12 +158,12 @@ class SimulatedPlant:
         begun = perf_counter()
         self._schedule.apply(t, world)
         drawn = sum([axis.train.supply_current for axis in self._axes])
-        volts = self._supply(drawn, effects.supply_drop)
-        volts_pin = pins.quarter_volts(volts)
+        volts = self._supply.voltage(drawn, effects.supply_drop)
+        volts_pin = pins.supply(volts)
         torques, duties = [], []
         for axis, angle, speed in zip(self._axes, world.angles, world.speeds, strict=True):
             firmware, train = axis.firmware, axis.train
-            duty = firmware.tick(t, axis.encoder.sample(angle), pins.milliamperes(train.current), volts_pin)
+            duty = firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
             if firmware.outbox:
                 axis.flush(t)
             torques.append(train.step(pins.duty(duty), firmware.bridge_enabled, volts, speed))
@@ -199,7 +199,7 @@ class SimulatedPlant:
         """Returns the tick log from row `first` on: "tick/t" and "tick/drive/NAME/…", each (M,)."""
         width = len(SIGNALS) * len(self._axes)
         rows = np.array(self._log[first * width :]).reshape(-1, width)
-        columns = {"tick/t": (first + np.arange(len(rows))) * (self._tick * 1e-9)}
+        columns: dict[str, Array] = {"tick/t": (first + np.arange(len(rows))) * (self._tick * 1e-9)}
         for k, axis in enumerate(self._axes):
             for j, signal in enumerate(SIGNALS):
                 columns[f"tick/drive/{axis.name}/{signal}"] = rows[:, k * len(SIGNALS) + j].copy()

@@ -1,4 +1,4 @@
-"""The recorder that the loop, the sensors and the bus talk to: it collects and hands on, once a cycle."""
+"""The recorder that the loop talks to: it adds what witnesses have noted and hands on, once a cycle."""
 
 from __future__ import annotations
 
@@ -7,40 +7,32 @@ from collections.abc import Mapping, Sequence
 from hilbed.cost import Cost, perf_counter
 from hilbed.ports import Reference
 from hilbed.record.disk import RecordError
-from hilbed.record.row import UNKNOWN, Batch, DeadReckoning, Row, Sink, Witnessed
-from hilbed.types import Array, Cycle, Pose, Reading, Snapshot, Transfer
+from hilbed.record.notes import Notes
+from hilbed.record.row import UNKNOWN, Batch, DeadReckoning, Row, Sink
+from hilbed.types import Array, Cycle, Pose
 
 
 class Journal:
-    """Recorder and Witness in front of any number of sinks.
+    """The recorder of a run in front of any number of sinks.
 
-    What a witness reports is only put on a list and reaches the sinks with the next cycle: reporting costs
-    a tenth of a microsecond, and the work is charged to `cost.record`, not to the part that reports.
+    What witnesses have noted reaches the sinks with the next cycle, so that the work is charged to
+    `cost.record`, not to the part that reports.
     """
 
     def __init__(
-        self, sinks: Sequence[Sink], cost: Cost, start: Pose, reference: Reference | None = None
+        self,
+        notes: Notes,
+        sinks: Sequence[Sink],
+        cost: Cost,
+        start: Pose,
+        reference: Reference | None = None,
     ) -> None:
+        self._notes = notes
         self._sinks = list(sinks)
         self._cost = cost
         self._reckoning = DeadReckoning(start)
         self._reference = reference
-        self._transfers: list[Transfer] = []
-        self._readings: list[Witnessed] = []
-        self._snapshots: list[Snapshot] = []
         self._ticks: dict[str, Array] = {}
-
-    def transfer(self, transfer: Transfer) -> None:
-        """Notes a frame that has crossed the bus."""
-        self._transfers.append(transfer)
-
-    def reading(self, reading: Reading, beacon: int, true: tuple[float, ...]) -> None:
-        """Notes a reading with its true beacon (−1: spurious) and true value (NaN: none)."""
-        self._readings.append(Witnessed(reading, beacon, true))
-
-    def snapshot(self, snapshot: Snapshot) -> None:
-        """Notes an exposed camera frame; its image must not be written to afterwards."""
-        self._snapshots.append(snapshot)
 
     def ticks(self, rows: Mapping[str, Array]) -> None:
         """Takes the rows of the plant's tick log that are new, each (n,), for the logs; at any pace."""
@@ -74,16 +66,15 @@ class Journal:
             raise problems[0]
 
     def _hand_on(self, row: Row | None) -> None:
-        batch = Batch(row, self._transfers, self._readings, self._snapshots, self._ticks)
+        notes = self._notes
+        batch = Batch(row, notes.transfers, notes.readings, notes.snapshots, self._ticks)
         broken: list[tuple[Sink, RecordError]] = []
         for sink in self._sinks:
             try:
                 sink.take(batch)
             except RecordError as error:
                 broken.append((sink, error))
-        self._transfers.clear()
-        self._readings.clear()
-        self._snapshots.clear()
+        notes.clear()
         self._ticks.clear()
         for sink, _ in broken:
             self._drop(sink)

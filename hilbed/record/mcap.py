@@ -19,14 +19,14 @@ from hilbed.types import Array, Innovation, Nanos, Snapshot
 
 
 class Disturbance(Protocol):
-    """What the log needs of a disturbance's block in the scenario: s since start, and s."""
+    """What the log needs of a disturbance's block in the scenario: start s, length s or None for good."""
 
     @property
     def kind(self) -> str: ...
     @property
     def start(self) -> float: ...
     @property
-    def length(self) -> float: ...
+    def length(self) -> float | None: ...
 
 
 class Setting(NamedTuple):
@@ -139,7 +139,11 @@ class McapLog:
 def events(disturbances: Sequence[Disturbance]) -> list[tuple[Nanos, str]]:
     """Returns when each disturbance begins and ends, in order of time."""
     begin = [(nanos(each.start), f"{each.kind} begins") for each in disturbances]
-    end = [(nanos(each.start + each.length), f"{each.kind} ends") for each in disturbances]
+    end = [
+        (nanos(each.start + each.length), f"{each.kind} ends")
+        for each in disturbances
+        if each.length is not None
+    ]
     return sorted(begin + end)
 
 

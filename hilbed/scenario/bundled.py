@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
+from hilbed.scenario import yaml12
 from hilbed.scenario.problems import nearest
 from hilbed.types import ScenarioError
 
@@ -36,3 +38,24 @@ def _short_name(path: Path) -> str:
     if path.resolve().is_relative_to(FOLDER.resolve()):
         return path.resolve().relative_to(FOLDER.resolve()).with_suffix("").as_posix()
     return path.stem
+
+
+def summary(name: str) -> tuple[str, str, str, str, str]:
+    """Returns robot, plant, estimator, controller and title of a bundled scenario."""
+    file = FOLDER / f"{name}.yaml"
+    text = file.read_text(encoding="utf-8")
+    data, _ = yaml12.read(text, str(file))
+    kinds = [_kind(data.get(block)) for block in ("robot", "plant", "estimator", "controller")]
+    return kinds[0], kinds[1], kinds[2], kinds[3], title(text)
+
+
+def _kind(block: Any) -> str:
+    if isinstance(block, str):
+        return block
+    return str(block.get("kind", "-")) if isinstance(block, dict) else "-"
+
+
+def title(text: str) -> str:
+    """Returns the first comment of a scenario's file, its title."""
+    first = text.partition("\n")[0]
+    return first.removeprefix("#").strip() if first.startswith("#") else ""

@@ -11,12 +11,10 @@ from hilbed.can.load import periodic_load
 from hilbed.can.specs import BusSpec, NodeSpec, resolve
 from hilbed.clock import nanos, seconds
 from hilbed.control import ControllerSpec, ReferenceSpec
-from hilbed.criteria import METRICS, CriterionSpec
+from hilbed.criteria import METRICS, CriterionSpec, metric_of
 from hilbed.disturbances import DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
-from hilbed.plant import PlantSpec
-from hilbed.plant.recorded_spec import RecordedSpec
-from hilbed.plant.specs import SimulatedSpec
+from hilbed.plant import PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.robots import ROBOTS, RobotSpec
 from hilbed.scenario import files
 from hilbed.scenario.problems import Problem, nearest
@@ -53,7 +51,8 @@ def _ticks(period: float, plant: PlantSpec) -> Problems:
             ("period",), f"period: {period:g} s is not a multiple of the plant's tick, {plant.tick:g} s"
         )
     if nanos(plant.encoder.latency) % tick:
-        text = f"plant.encoder.latency: {plant.encoder.latency:g} s is not a multiple of the tick, {plant.tick:g} s"
+        latency = f"plant.encoder.latency: {plant.encoder.latency:g} s"
+        text = f"{latency} is not a multiple of the tick, {plant.tick:g} s"
         yield Problem(("plant", "encoder", "latency"), text)
 
 
@@ -154,12 +153,11 @@ def _disturbed(
 
 def _judged(criteria: Mapping[str, CriterionSpec], duration: float, period: float) -> Problems:
     for name, criterion in criteria.items():
-        metric = criterion.metric or name
-        bare = metric.partition(".")[2] or metric
-        if bare not in METRICS:
-            text = f"criteria.{name}: unknown metric {metric!r}{nearest(bare, list(METRICS))}"
+        metric = metric_of(name, criterion)
+        if metric not in METRICS:
+            text = f"criteria.{name}: unknown metric {metric!r}{nearest(metric, list(METRICS))}"
             yield Problem(("criteria", name), text)
-        if criterion.start is not None and criterion.start > duration - seconds(nanos(period)):
+        if criterion.start > duration - seconds(nanos(period)):
             text = f"criteria.{name}.from: {criterion.start:g} s leaves nothing of a run of {duration:g} s"
             yield Problem(("criteria", name, "from"), text)
 

@@ -16,7 +16,7 @@ def resolve(name: str, folder: Path) -> Path:
     """
     scheme, colon, rest = name.partition(":")
     if colon and scheme == "package":
-        return _inside(package_file("."), rest, name)
+        return package_file(rest)
     if colon and scheme == "data":
         return _inside(_data_folder(name), rest, name)
     return _inside(folder, name, name)

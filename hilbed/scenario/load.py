@@ -34,7 +34,7 @@ def load(name: str, settings: Sequence[str] = (), seed: int | None = None) -> Lo
     places = problems.Places(str(path), marks)
     for setting in [*settings, *([] if seed is None else [f"seed={seed}"])]:
         places.overlaid(overlay.apply(data, setting), setting)
-    return Loaded(short, _validated(data, places, path.parent), path.parent, title(text))
+    return Loaded(short, _validated(data, places, path.parent), path.parent, bundled.title(text))
 
 
 def _text(path: Path) -> str:
@@ -71,12 +71,6 @@ def _valid_blocks(data: Mapping[str, Any]) -> dict[str, Any]:
 
 def _block(field: FieldInfo, value: Any) -> Any:
     return TypeAdapter(field.rebuild_annotation()).validate_python(value)
-
-
-def title(text: str) -> str:
-    """Returns the first comment of a scenario's file, its title."""
-    first = text.partition("\n")[0]
-    return first.removeprefix("#").strip() if first.startswith("#") else ""
 
 
 def resolved(scenario: Scenario, versions: Mapping[str, str]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from hilbed.cost import Cost
 from hilbed.record.journal import Journal
+from hilbed.record.notes import Notes
 from hilbed.record.row import Sink
 from hilbed.types import (
     Command,
@@ -61,17 +62,18 @@ def image(k: int) -> np.ndarray:
 
 def play(sinks: list[Sink], cycles: int = 301, boot: int = 3, close: bool = True) -> Journal:
     """Runs a robot with a camera and two drives through a journal."""
-    journal = Journal(sinks, Cost(), Pose(0.0, 0.0, 0.0), Line())
+    notes = Notes()
+    journal = Journal(notes, sinks, Cost(), Pose(0.0, 0.0, 0.0), Line())
     for k in range(boot):
-        journal.transfer(transfer(-1_000_000_000 + k * 1_000_000, 0x700 + k))
+        notes.transfer(transfer(-1_000_000_000 + k * 1_000_000, 0x700 + k))
     for k in range(cycles):
         t = k * PERIOD
-        journal.transfer(transfer(t, 0x80, b""))
-        journal.transfer(transfer(t + 50_000, 0x181, k.to_bytes(8, "big")))
+        notes.transfer(transfer(t, 0x80, b""))
+        notes.transfer(transfer(t + 50_000, 0x181, k.to_bytes(8, "big")))
         innovations: tuple[Innovation, ...] = ()
         if k % 10 == 0:
-            journal.snapshot(Snapshot(t, image(k), 0.1, (3.5, 20.25), (0, None)))
-            journal.reading(Reading("azimuth", t, t + 30_000_000, (0.5,), (0.01,)), 0, (0.49,))
+            notes.snapshot(Snapshot(t, image(k), 0.1, (3.5, 20.25), (0, None)))
+            notes.reading(Reading("azimuth", t, t + 30_000_000, (0.5,), (0.01,)), 0, (0.49,))
             innovations = (Innovation(t, 1.5, 1, True),)
         journal.record(cycle(k, innovations=innovations, late=5_000_000))
         if k % 100 == 99:

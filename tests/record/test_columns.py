@@ -84,13 +84,15 @@ def test_names_that_the_robot_lacks_are_absent() -> None:
 def test_readings_are_in_order_of_delivery_and_only_delivered_ones_make_rows() -> None:
     from hilbed.cost import Cost
     from hilbed.record.journal import Journal
+    from hilbed.record.notes import Notes
 
     columns = Columns()
-    journal = Journal([columns], Cost(), Pose(0.0, 0.0, 0.0))
-    journal.reading(Reading("azimuth", 0, 3 * PERIOD, (0.3,), (0.1,)), 2, (0.31,))
-    journal.reading(Reading("azimuth", 0, 1 * PERIOD, (0.1,), (0.1,)), -1, (nan,))
-    journal.reading(Reading("position", 0, 1 * PERIOD, (1.0, 2.0), (0.1, 0.1)), -1, (nan,))
-    journal.reading(Reading("azimuth", 0, 9 * PERIOD, (0.9,), (0.1,)), 1, (0.9,))
+    notes = Notes()
+    journal = Journal(notes, [columns], Cost(), Pose(0.0, 0.0, 0.0))
+    notes.reading(Reading("azimuth", 0, 3 * PERIOD, (0.3,), (0.1,)), 2, (0.31,))
+    notes.reading(Reading("azimuth", 0, 1 * PERIOD, (0.1,), (0.1,)), -1, (nan,))
+    notes.reading(Reading("position", 0, 1 * PERIOD, (1.0, 2.0), (0.1, 0.1)), -1, (nan,))
+    notes.reading(Reading("azimuth", 0, 9 * PERIOD, (0.9,), (0.1,)), 1, (0.9,))
     for k in range(5):
         journal.record(cycle(k, innovations=(Innovation(0, 2.0, 2, False),)))
     signals = columns.finish()

@@ -6,6 +6,7 @@ from hilbed.cost import Cost
 from hilbed.ports import Recorder, Witness
 from hilbed.record.disk import RecordError
 from hilbed.record.journal import Journal
+from hilbed.record.notes import Notes
 from hilbed.record.row import Batch
 from hilbed.types import Pose
 from tests.record.runs import cycle, transfer
@@ -26,11 +27,12 @@ class Counting:
         self.closed += 1
 
 
-def test_a_journal_is_recorder_and_witness_and_pays_for_itself() -> None:
+def test_what_witnesses_note_reaches_the_sinks_with_the_cycle_and_is_paid_for() -> None:
     cost, sink = Cost(), Counting()
-    journal = Journal([sink], cost, Pose(0.0, 0.0, 0.0))
+    notes = Notes()
+    journal = Journal(notes, [sink], cost, Pose(0.0, 0.0, 0.0))
     recorder: Recorder = journal
-    witness: Witness = journal
+    witness: Witness = notes
     witness.transfer(transfer(0, 1))
     recorder.record(cycle(0))
     witness.transfer(transfer(1, 1))
@@ -42,7 +44,8 @@ def test_a_journal_is_recorder_and_witness_and_pays_for_itself() -> None:
 
 def test_a_log_that_breaks_is_closed_and_the_others_go_on() -> None:
     good, bad = Counting(), Counting(fail_at=2)
-    journal = Journal([bad, good], Cost(), Pose(0.0, 0.0, 0.0))
+    notes = Notes()
+    journal = Journal(notes, [bad, good], Cost(), Pose(0.0, 0.0, 0.0))
     journal.record(cycle(0))
     with pytest.raises(RecordError, match="disk full"):
         journal.record(cycle(1))

@@ -1,0 +1,38 @@
+"""A rig with what is done before and after its cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from hilbed.clock import MILLISECOND, SECOND
+from hilbed.loop import Rig
+from hilbed.ports import Reference
+from hilbed.scene import BeaconSpec
+from hilbed.types import Array, Nanos, Pose
+
+BOOT: Nanos = SECOND
+"""How long before t = 0 the drives are powered; time stamps in can.log and log.mcap are t plus this."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A rig, ready to boot.
+
+    start: pose at t = 0; kinds: what its sensors measure, with the number of components; boot: brings the
+    drives up, ends at t = 0; stop: brings them to rest from the time given; ticks: the plant's log from a row
+    on; tick: ns; events: what the drives did that they should not have; close: gives back what it holds.
+    """
+
+    rig: Rig
+    start: Pose
+    reference: Reference | None
+    drives: tuple[str, ...]
+    kinds: dict[str, int]
+    beacons: tuple[BeaconSpec, ...]
+    tick: Nanos = MILLISECOND
+    boot: Callable[[], None] = lambda: None
+    stop: Callable[[Nanos], None] = lambda _: None
+    ticks: Callable[[int], dict[str, Array]] = lambda _: {}
+    events: Callable[[], list[str]] = list
+    close: Callable[[], None] = lambda: None

@@ -1,0 +1,43 @@
+"""A bench around a recorded robot."""
+
+from __future__ import annotations
+
+from hilbed.build.bench import Bench
+from hilbed.build.minds import Surroundings, make_controller, make_estimator
+from hilbed.clock import nanos
+from hilbed.cost import Cost
+from hilbed.loop import Rig
+from hilbed.plant.recorded import Recorded
+from hilbed.plant.recorded_spec import RecordedSpec
+from hilbed.plant.recording import load
+from hilbed.plant.replay import RecordedBase, RecordedPlant, RecordedSensor
+from hilbed.ports import Witness
+from hilbed.scenario import files
+from hilbed.scenario.load import Loaded
+from hilbed.scene import BeaconSpec
+from hilbed.types import ScenarioError
+
+
+def recorded(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
+    """Returns a bench whose odometry, readings and truth come from a file; raises ScenarioError."""
+    scenario, spec = loaded.scenario, loaded.scenario.plant
+    assert isinstance(spec, RecordedSpec)
+    robot = Recorded(spec, load(files.resolve(spec.file, loaded.folder)))
+    if scenario.duration > robot.duration + scenario.period:
+        raise ScenarioError(
+            f"duration: {scenario.duration:g} s, {spec.file} has {robot.duration:g} s from its start"
+        )
+    sensors = tuple(RecordedSensor(robot, kind, witness) for kind in spec.kinds())
+    reference = None if scenario.reference is None else scenario.reference.build()
+    period = nanos(scenario.period)
+    rig = Rig(
+        RecordedBase(robot),
+        sensors,
+        make_estimator(scenario.estimator, Surroundings(robot.beacons, robot.start, robot.mount)),
+        make_controller(scenario.controller, reference, period),
+        RecordedPlant(robot),
+        period,
+        cost,
+    )
+    beacons = tuple(BeaconSpec(at=at) for at in robot.beacons)
+    return Bench(rig, robot.start, reference, (), dict.fromkeys(spec.kinds(), 1), beacons)

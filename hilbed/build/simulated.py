@@ -1,0 +1,126 @@
+"""A bench around simulated drives: wire, firmware, motors, world and sensors on one clock."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hilbed import rng
+from hilbed.build.bench import BOOT, Bench
+from hilbed.build.minds import Surroundings, make_controller, make_estimator
+from hilbed.can.base import CanBase
+from hilbed.can.master import Master
+from hilbed.can.node import Node
+from hilbed.can.specs import resolve
+from hilbed.can.wire import Wire
+from hilbed.clock import MILLISECOND, nanos, seconds
+from hilbed.cost import Cost
+from hilbed.disturbances import DISTURBANCES
+from hilbed.disturbances.schedule import Schedule
+from hilbed.effects import Effects
+from hilbed.loop import Rig
+from hilbed.plant.bullet import BulletWorld
+from hilbed.plant.drivetrain import DriveTrain, reflected_inertia
+from hilbed.plant.encoder import Encoder
+from hilbed.plant.simulated import Axis, SimulatedPlant
+from hilbed.plant.specs import SimulatedSpec
+from hilbed.plant.supply import Supply
+from hilbed.plant.urdf import diffdrive
+from hilbed.ports import Reference, Sensor, Witness
+from hilbed.robots import ROBOTS
+from hilbed.scenario import files
+from hilbed.scenario.load import Loaded
+from hilbed.scenario.model import Scenario
+from hilbed.sensors.camera import Camera, open_eye
+from hilbed.types import Nanos, Pose
+
+STANDSTILL: Nanos = 500 * MILLISECOND
+"""How long the bench goes on after the last cycle, so that the drives come to rest."""
+
+
+def simulated(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
+    """Returns the whole bench in simulated time; raises ScenarioError where URDF or renderer refuse."""
+    scenario, spec = loaded.scenario, loaded.scenario.plant
+    assert isinstance(spec, SimulatedSpec)
+    robot = ROBOTS[scenario.robot.kind](scenario.robot)
+    reference = None if scenario.reference is None else scenario.reference.build()
+    start, period, tick = start_of(scenario, reference), nanos(scenario.period), nanos(spec.tick)
+    nodes = resolve(scenario.nodes, robot.drives)
+
+    effects = Effects([spec.friction] * len(robot.drives))
+    schedule = _schedule(scenario, robot.drives, effects)
+    sensors = tuple(_sensors(scenario, spec, effects, witness, cost))
+    world = _world(loaded, spec, start, cost)
+    wire = Wire(scenario.bus.bitrate, witness.transfer)
+    port = wire.attach("controller")
+    axes = [_axis(node, spec, wire) for node in nodes]
+    plant = SimulatedPlant(axes, world, Supply(spec.supply), schedule, wire, sensors, tick, cost)
+    base = CanBase(robot, port, nodes, scenario.bus)
+    rig = Rig(
+        base,
+        sensors,
+        make_estimator(scenario.estimator, _known(scenario, spec, start)),
+        make_controller(scenario.controller, reference, period),
+        plant,
+        period,
+        cost,
+    )
+
+    def pump(t: Nanos) -> Nanos:
+        plant.idle(t, t + tick)
+        return t + tick
+
+    def boot() -> None:
+        Master(nodes, port, period).boot(pump, -BOOT, 0)
+        plant.start()
+
+    def stop(t: Nanos) -> None:
+        base.stop(t)
+        plant.advance(t, t + STANDSTILL)
+
+    def events() -> list[str]:
+        return [f"t = {seconds(event.t):.3f} s: {event.drive}: {event.text}" for event in base.ears.events]
+
+    return Bench(
+        rig, start, reference, robot.drives, {"azimuth": 1} if sensors else {}, tuple(spec.beacons),
+        tick, boot, stop, plant.ticks, events, world.close,
+    )  # fmt: skip
+
+
+def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
+    """Returns where the robot stands at t = 0: as told, else where the reference starts."""
+    if scenario.robot.start is not None:
+        return Pose(*scenario.robot.start)
+    return Pose(0.0, 0.0, 0.0) if reference is None else reference.at(0).pose
+
+
+def _known(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings:
+    mounts = [sensor.mount[:2] for sensor in scenario.sensors.values()]
+    return Surroundings([beacon.at for beacon in spec.beacons], start, mounts[0] if mounts else (0.0, 0.0))
+
+
+def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:
+    entries = []
+    for spec in scenario.disturbances:
+        drive = getattr(spec, "drive", None)
+        wheel = -1 if drive is None else drives.index(drive)
+        entries.append((spec, DISTURBANCES[spec.kind](spec, wheel)))
+    return Schedule(entries, effects)
+
+
+def _sensors(
+    scenario: Scenario, spec: SimulatedSpec, effects: Effects, witness: Witness, cost: Cost
+) -> Iterator[Sensor]:
+    for name, sensor in scenario.sensors.items():
+        eye = open_eye(sensor, spec.beacons, cost)
+        yield Camera(sensor, eye, rng.stream(scenario.seed, f"sensors.{name}"), effects, witness)
+
+
+def _world(loaded: Loaded, spec: SimulatedSpec, start: Pose, cost: Cost) -> BulletWorld:
+    robot = loaded.scenario.robot
+    body = diffdrive(files.resolve(robot.urdf, loaded.folder), robot.wheel_radius, robot.track)
+    return BulletWorld(body, spec, start, reflected_inertia(spec.motor, spec.gear), cost)
+
+
+def _axis(node: Node, spec: SimulatedSpec, wire: Wire) -> Axis:
+    train = DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick)
+    return Axis(node.name, node.id, train, Encoder(spec.encoder, spec.tick), wire.attach)
