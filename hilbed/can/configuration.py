@@ -26,6 +26,8 @@ def steps(node: Node, period: Nanos) -> Iterator[Step]:
         yield write, write.value
     for setting in table.period:
         yield setting, setting.raw(seconds(period))
+    if table.interpolates:
+        yield from _interpolation(period)
     for key, value in node.settings.items():
         setting = table.settings[key]
         yield setting, setting.raw(value)
@@ -40,6 +42,16 @@ def _heartbeat(table: DriveTable, period: Nanos) -> Iterator[Step]:
     patience = max(table.heartbeat.consumer, 3 * period // MILLISECOND)
     yield Entry(index=0x1016, sub=1, type="u32"), CONTROLLER_ID << 16 | min(patience, 0xFFFF)
     yield Entry(index=0x1017, type="u16"), table.heartbeat.drive
+
+
+def _interpolation(period: Nanos) -> Iterator[Step]:
+    """60C2 has one byte and a power of ten; a period that it cannot say exactly is left to 1006."""
+    for exponent in (-3, -2, -1, -4, -5, -6):
+        mantissa, rest = divmod(period, 10 ** (9 + exponent))
+        if not rest and 0 < mantissa <= 255:
+            yield Entry(index=0x60C2, sub=2, type="i8"), exponent
+            yield Entry(index=0x60C2, sub=1, type="u8"), mantissa
+            return
 
 
 def _pdo(node: Node, name: str, pdo: Pdo) -> Iterator[Step]:

@@ -43,9 +43,7 @@ class Setting(Entry):
 
     def raw(self, value: float | str) -> float:
         """Returns what is written for a value in SI units or a word; KeyError for an unknown word."""
-        if isinstance(value, str):
-            return self.words[value]
-        return value * self.scale if self.type[0] == "f" else round(value * self.scale)
+        return self.words[value] if isinstance(value, str) else value * self.scale
 
 
 class Pdo(Spec):
@@ -101,6 +99,7 @@ class Heartbeat(Spec):
 class DriveTable(Spec):
     """A type of drive: identity, units, objects, PDOs, modes, what is written at boot, where settings go.
 
+    remappable: whether the mapping of its PDOs may be written; interpolates: whether it has 60C2;
     writes: as they stand; period: objects that follow from the control period (s); settings: objects that
     follow from words and numbers of the scenario.
     """
@@ -111,6 +110,7 @@ class DriveTable(Spec):
     objects: dict[str, Entry]
     pdos: dict[PdoName, Pdo]
     remappable: bool = True
+    interpolates: bool = False
     modes: dict[str, int]
     heartbeat: Heartbeat = Heartbeat()
     writes: list[Write] = Field(default_factory=list)

@@ -59,6 +59,12 @@ class Link:
             self.step()
         return True
 
+    def pause(self, length: Nanos) -> None:
+        """Waits for nothing; listeners go on."""
+        end = self.t + length
+        while self.t < end:
+            self.step()
+
     def step(self) -> None:
         """Moves time on once and hands out what has arrived; BusError at the limit."""
         if self.t >= self._limit:

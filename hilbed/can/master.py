@@ -15,6 +15,8 @@ from hilbed.types import BusError, Nanos
 
 BOOT_UP_TIMEOUT: Nanos = 300 * MILLISECOND
 STATE_TIMEOUT: Nanos = 300 * MILLISECOND
+SETTLING: Nanos = 20 * MILLISECOND
+"""A drive that finds something wrong with its supply or motor says so within this time of being enabled."""
 
 
 class Master:
@@ -43,8 +45,10 @@ class Master:
             _await_boot_up(link, heard, node)
         for node in self._nodes:
             self._bring_up(link, heard, node)
-        while link.t < ready:
-            link.step()
+        link.pause(SETTLING)
+        for node in self._nodes:
+            _check_enabled(SdoClient(link, node.name, node.id), node)
+        link.pause(ready - link.t)
         return link.t
 
     def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> None:
@@ -98,23 +102,28 @@ def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
 
 def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
     """Leads the drive to operation enabled, through a fault reset if need be."""
-    status, control = node.table.objects["statusword"], node.table.objects["controlword"]
+    control = node.table.objects["controlword"]
     deadline = link.t + STATE_TIMEOUT
-    while True:
-        statusword = sdo.read(status.index, status.sub, status.type)
-        state = cia402.state_of(statusword)
-        if state == cia402.ENABLED:
-            return
-        if link.t >= deadline:
-            raise BusError(
-                f"{node}: stays in {state} ({status.index:04X} = {statusword:#06x}){_why(sdo, node)}"
-            )
+    while (state := cia402.state_of(_statusword(sdo, node))) != cia402.ENABLED and link.t < deadline:
         word = cia402.towards_enabled(state)
         if word == cia402.FAULT_RESET:  # acts on its rising edge
             sdo.write(control.index, control.sub, control.type, cia402.DISABLE_VOLTAGE)
         if word is not None:
             sdo.write(control.index, control.sub, control.type, word)
         link.step()
+    _check_enabled(sdo, node)
+
+
+def _statusword(sdo: SdoClient, node: Node) -> int:
+    entry = node.table.objects["statusword"]
+    return sdo.read(entry.index, entry.sub, entry.type)
+
+
+def _check_enabled(sdo: SdoClient, node: Node) -> None:
+    statusword = _statusword(sdo, node)
+    state = cia402.state_of(statusword)
+    if state != cia402.ENABLED:
+        raise BusError(f"{node}: in {state} (statusword {statusword:#06x}){_why(sdo, node)}")
 
 
 def _why(sdo: SdoClient, node: Node) -> str:

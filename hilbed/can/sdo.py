@@ -48,8 +48,14 @@ class SdoClient:
         return int(value)
 
     def write(self, index: int, sub: int, data_type: str, value: float) -> None:
-        """Writes an object of a numeric type."""
-        self.download(index, sub, scalar(data_type).pack(value))
+        """Writes an object of a numeric type, rounded where it is an integer."""
+        try:
+            data = scalar(data_type).pack(value if data_type[0] == "f" else round(value))
+        except (error, OverflowError):
+            raise BusError(
+                f"{self._who}: {value:g} does not fit {index:04X}:{sub:02X}, a {data_type}"
+            ) from None
+        self.download(index, sub, data)
 
     def upload(self, index: int, sub: int) -> bytes:
         """Reads an object's bytes."""
