@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from math import inf, nan, remainder, sqrt, tau
-from typing import Annotated, Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import Field
 
 from hilbed.angles import wrap
 from hilbed.clock import nanos, seconds
+from hilbed.plant.recorded_spec import RecordedSpec
 from hilbed.plant.recording import Recording
-from hilbed.spec import Finite, NonNegative, Point, Positive, Spec
+from hilbed.spec import Point
 from hilbed.types import Array, Nanos, Pose, ScenarioError
 
 Rows = npt.NDArray[np.intp]
@@ -21,32 +20,6 @@ Rows = npt.NDArray[np.intp]
 ROUNDING = 1e-9  # s: times in files are decimal
 VARIANCES = {"azimuth": "bearing_variance", "range": "range_variance"}
 UNKNOWN = Pose(nan, nan, nan)
-
-
-class RecordedSpec(Spec):
-    """Plays a file (format: module `recording`).
-
-    start, length (s): which part of it, null for all that is left; azimuth, range: which readings are
-    used; max_range (m): beacons farther away are left out where the file knows ranges; azimuth_std (rad),
-    range_std (m): what readings say of themselves, null for the file's variances; anonymous: readings do
-    not say whose they are; pose (m, m, rad): the start as the estimator is told it, null for the truth.
-    """
-
-    kind: Literal["recorded"]
-    file: str
-    start: NonNegative = 0.0
-    length: Positive | None = None
-    azimuth: bool = True
-    range: bool = False
-    max_range: Positive | None = None
-    azimuth_std: Positive | None = None
-    range_std: Positive | None = None
-    anonymous: bool = False
-    pose: tuple[Finite, Finite, Annotated[float, Field(ge=-3.2, le=3.2)]] | None = None
-
-    def kinds(self) -> list[str]:
-        """Returns the kinds of readings that are used."""
-        return [kind for kind, used in (("azimuth", self.azimuth), ("range", self.range)) if used]
 
 
 class Recorded:
