@@ -136,7 +136,7 @@ class CanBase:
         if before is None:
             return
         for axis in self._axes:
-            silent = axis.heard < before and t - axis.heard > self._patience
+            silent = axis.heard <= before and t - axis.heard > self._patience
             if silent == axis.silent:
                 continue
             axis.silent = silent

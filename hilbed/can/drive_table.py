@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from functools import cache
-from math import tau
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
 
 from hilbed.can.codec import DataType, PdoCodec, bit_length
-from hilbed.spec import Finite, Positive, Spec
+from hilbed.can.units import Units
+from hilbed.spec import Finite, Spec
 from hilbed.types import ScenarioError
 
 TABLES = Path(__file__).parent / "tables"
@@ -61,31 +61,6 @@ class Identity(Spec):
     device_type: U32
     vendor: U32
     product: U32
-
-
-class Units(Spec):
-    """What a number in 60FF, 606C and 6064 is.
-
-    counts_per_turn: of the shaft that carries the encoder; velocity: counts/s or rpm of that shaft;
-    gear: turns of that shaft a turn of the wheel; polarity: −1 where the motor is mounted mirrored;
-    rated_current: A, of which 6078 gives per mille.
-    """
-
-    counts_per_turn: Positive
-    velocity: Literal["counts/s", "rpm"] = "counts/s"
-    gear: Positive = 1.0
-    polarity: Literal[-1, 1] = 1
-    rated_current: Positive
-
-    def position_scale(self, counts_per_turn: float | None = None) -> float:
-        """Returns counts a radian at the wheel; another encoder may be given."""
-        return (counts_per_turn or self.counts_per_turn) * self.gear * self.polarity / tau
-
-    def velocity_scale(self, counts_per_turn: float | None = None) -> float:
-        """Returns units of 60FF and 606C a rad/s at the wheel."""
-        if self.velocity == "counts/s":
-            return self.position_scale(counts_per_turn)
-        return 60.0 * self.gear * self.polarity / tau
 
 
 class Heartbeat(Spec):

@@ -32,6 +32,8 @@ class HilbedBus(BusABC):
     ) -> None:
         if options.get("fd"):
             raise CanInitializationError("interface hilbed speaks classical CAN only, not CAN FD")
+        if options.get("receive_own_messages"):
+            raise CanInitializationError("interface hilbed does not return a bus its own frames")
         self._name = str(channel)
         try:
             self._shared, self._port = channels.join(self._name, None if bitrate is None else int(bitrate))

@@ -9,46 +9,18 @@ real bus) are served in the order of queueing.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 from heapq import heappop, heappush
 from typing import NamedTuple
 
+from hilbed.can.arbitration import arbitration
 from hilbed.can.frame_length import INTERFRAME_BITS, frame_bits
+from hilbed.can.statistics import Statistics
 from hilbed.clock import SECOND
 from hilbed.types import BusError, Frame, Nanos, Received, Transfer
 
 Listener = Callable[[Nanos, Frame], None]
 
 _LONG_AGO: Nanos = -(1 << 62)
-
-
-class Statistics(NamedTuple):
-    """Totals of a wire: frames received, time the bus was taken (interframe spaces included), worst wait.
-
-    worst_latency: the longest time from queueing to the first bit on the bus.
-    """
-
-    t: Nanos
-    frames: int
-    busy: Nanos
-    worst_latency: Nanos
-
-
-def load(before: Statistics, after: Statistics) -> float:
-    """Returns the bus load between two snapshots, 0 to 1 (frames count where they end)."""
-    return (after.busy - before.busy) / (after.t - before.t) if after.t > before.t else 0.0
-
-
-@lru_cache(maxsize=4096)
-def arbitration(identifier: int, extended: bool, remote: bool) -> int:
-    """Returns the 32 arbitration bits as a number: the lower one wins the bus (dominant is 0).
-
-    Standard: identifier, RTR, IDE = 0. Extended: base, SRR = 1, IDE = 1, extension, RTR. So data beats
-    remote, and a standard frame beats an extended one with the same base.
-    """
-    if not extended:
-        return identifier << 21 | remote << 20
-    return (identifier >> 18) << 21 | 0b11 << 19 | (identifier & 0x3FFFF) << 1 | remote
 
 
 class _Queued(NamedTuple):

@@ -114,13 +114,13 @@ def changed(path: Path, **update: Any) -> Path:
 )
 def test_bad_tables_name_the_file(tmp_path: Path, update: dict[str, Any], message: str) -> None:
     path = changed(tmp_path / "mine.yaml", **update)
-    with pytest.raises(ScenarioError, match=f"mine.yaml.*{message}"):
+    with pytest.raises(ScenarioError, match=rf"mine\.yaml.*{message}"):
         read_table(path)
 
 
 def test_tables_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioError, match="absent.yaml"):
+    with pytest.raises(ScenarioError, match=r"absent\.yaml"):
         read_table(tmp_path / "absent.yaml")
     (tmp_path / "broken.yaml").write_text("a: [", encoding="utf-8")
-    with pytest.raises(ScenarioError, match="broken.yaml"):
+    with pytest.raises(ScenarioError, match=r"broken\.yaml"):
         read_table(tmp_path / "broken.yaml")

@@ -6,8 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hilbed.can.arbitration import arbitration
 from hilbed.can.frame_length import frame_bits
-from hilbed.can.wire import Port, Statistics, Wire, arbitration, load
+from hilbed.can.statistics import Statistics, load
+from hilbed.can.wire import Port, Wire
 from hilbed.types import BusError, Frame, Nanos, Transfer
 
 BIT = 2000  # ns at 500 kbit/s
