@@ -93,7 +93,9 @@ def perform(loaded: Loaded, folder: RunFolder | None, watch: Watch | None = None
         _run(bench, journal, nanos(loaded.scenario.duration), watch or Watch(), ending)
     finally:
         bench.close()
-    signals = columns.finish(bench.ticks(0), bench.tick)
+    rows = ending.last // bench.tick + 1  # the log goes on while the drives stop
+    ticks = {name: column[:rows] for name, column in bench.ticks(0).items()}
+    signals = columns.finish(ticks, bench.tick)
     content = _judge(loaded, signals, bus.digest(), cost, ending)
     if folder is not None:
         ending.attempt(lambda: _write(folder, loaded, signals, content))

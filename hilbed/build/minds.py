@@ -64,4 +64,4 @@ def _open_loop(_: Any, reference: Reference, __: Nanos) -> Controller:
 
 ESTIMATORS: dict[str, Callable[[Any, Surroundings], Estimator]] = {"ekf": _ekf, "odometry": _odometry}
 
-CONTROLLERS: dict[str, Callable[[Any, Reference, Nanos], Controller]] = {"lqr": _lqr, "open-loop": _open_loop}
+CONTROLLERS: dict[str, Callable[[Any, Reference, Nanos], Controller]] = {"lqr": _lqr, "open_loop": _open_loop}

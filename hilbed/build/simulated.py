@@ -100,10 +100,12 @@ def _known(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings
 
 def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:
     entries = []
-    for spec in scenario.disturbances:
+    for k, spec in enumerate(scenario.disturbances):
         drive = getattr(spec, "drive", None)
         wheel = -1 if drive is None else drives.index(drive)
-        entries.append((spec, DISTURBANCES[spec.kind](spec, wheel)))
+        entries.append(
+            (spec, DISTURBANCES[spec.kind](spec, wheel, rng.stream(scenario.seed, f"disturbances.{k}")))
+        )
     return Schedule(entries, effects)
 
 

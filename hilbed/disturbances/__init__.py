@@ -1,18 +1,25 @@
 """Disturbances: one function each, switched on and off by the scenario."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
 from hilbed.disturbances.bodies import Push, SlipPatch, WheelRadius, push, slip_patch, wheel_radius
 from hilbed.disturbances.drives import LoadTorque, SupplySag, load_torque, supply_sag
 from hilbed.disturbances.schedule import Disturbance, Schedule
 from hilbed.disturbances.vision import CameraLoss, SpuriousAzimuths, camera_loss, spurious_azimuths
 
-DISTURBANCES = {
-    "load-torque": load_torque,
-    "slip-patch": slip_patch,
-    "wheel-radius": wheel_radius,
+DISTURBANCES: dict[str, Callable[[Any, int, np.random.Generator], Disturbance]] = {
+    "load_torque": load_torque,
+    "slip_patch": slip_patch,
+    "wheel_radius": wheel_radius,
     "push": push,
-    "supply-sag": supply_sag,
-    "spurious-azimuths": spurious_azimuths,
-    "camera-loss": camera_loss,
+    "supply_sag": supply_sag,
+    "spurious_azimuths": spurious_azimuths,
+    "camera_loss": camera_loss,
 }
 
 DisturbanceSpec = LoadTorque | SlipPatch | WheelRadius | Push | SupplySag | SpuriousAzimuths | CameraLoss

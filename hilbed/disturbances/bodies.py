@@ -4,27 +4,33 @@ from __future__ import annotations
 
 from typing import Literal
 
-from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
+import numpy as np
+
+from hilbed.disturbances.schedule import Disturbance, DisturbanceBase, drawn
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import Finite, NonNegative, Point, Positive
 from hilbed.types import Nanos
+
+SMALLEST_WHEEL = 0.1
+"""Factor below which a drawn wheel radius is not taken: a wheel stays a wheel."""
 
 
 class SlipPatch(DisturbanceBase):
     """A rectangle on the ground, from corner to corner (m, map), with another coefficient of friction."""
 
-    kind: Literal["slip-patch"] = "slip-patch"
+    kind: Literal["slip_patch"] = "slip_patch"
     corner: Point
     opposite: Point
     friction: NonNegative
 
 
 class WheelRadius(DisturbanceBase):
-    """A wheel whose rolling radius is `size` times the nominal one: odometry's systematic error."""
+    """A wheel that rolls as one of `size` ± `spread` times its radius: odometry's systematic error."""
 
-    kind: Literal["wheel-radius"] = "wheel-radius"
+    kind: Literal["wheel_radius"] = "wheel_radius"
     drive: str
     size: Positive
+    spread: NonNegative = 0.0
 
 
 class Push(DisturbanceBase):
@@ -36,7 +42,7 @@ class Push(DisturbanceBase):
     length: Positive | None = 0.1
 
 
-def slip_patch(spec: SlipPatch, _: int) -> Disturbance:
+def slip_patch(spec: SlipPatch, _: int, __: np.random.Generator) -> Disturbance:
     """Returns the disturbance that changes friction under every wheel inside the rectangle."""
     (x0, x1), (y0, y1) = (sorted(pair) for pair in zip(spec.corner, spec.opposite, strict=True))
 
@@ -48,16 +54,17 @@ def slip_patch(spec: SlipPatch, _: int) -> Disturbance:
     return apply
 
 
-def wheel_radius(spec: WheelRadius, wheel: int) -> Disturbance:
+def wheel_radius(spec: WheelRadius, wheel: int, rng: np.random.Generator) -> Disturbance:
     """Returns the disturbance that scales the rolling radius of the wheel with that index."""
+    size = max(drawn(spec.size, spec.spread, rng), SMALLEST_WHEEL)
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
-        effects.radius[wheel] *= spec.size
+        effects.radius[wheel] *= size
 
     return apply
 
 
-def push(spec: Push, _: int) -> Disturbance:
+def push(spec: Push, _: int, __: np.random.Generator) -> Disturbance:
     """Returns the disturbance that pushes and turns the body."""
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+import numpy as np
 from pydantic import model_validator
 
 from hilbed.clock import seconds
-from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
+from hilbed.disturbances.schedule import Disturbance, DisturbanceBase, drawn
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import Finite, NonNegative, Positive
 from hilbed.types import Nanos
@@ -17,15 +18,16 @@ IMPULSE_LENGTH = 0.02
 
 
 class LoadTorque(DisturbanceBase):
-    """A torque of `size` N m on a wheel's axle, positive against forward rotation.
+    """A torque of `size` ± `spread` N m on a wheel's axle, positive against forward rotation.
 
     shape: step (at once), ramp (rises linearly to `size` over `rise` s, then stays), impulse (one pulse of
     `length`, 20 ms where none is given).
     """
 
-    kind: Literal["load-torque"] = "load-torque"
+    kind: Literal["load_torque"] = "load_torque"
     drive: str
     size: Finite
+    spread: NonNegative = 0.0
     shape: Literal["step", "ramp", "impulse"] = "step"
     rise: Positive = 1.0
 
@@ -38,26 +40,29 @@ class LoadTorque(DisturbanceBase):
 
 
 class SupplySag(DisturbanceBase):
-    """Takes `size` V off the supply's open-circuit voltage."""
+    """Takes `size` ± `spread` V off the supply's open-circuit voltage."""
 
-    kind: Literal["supply-sag"] = "supply-sag"
+    kind: Literal["supply_sag"] = "supply_sag"
     size: NonNegative
+    spread: NonNegative = 0.0
 
 
-def load_torque(spec: LoadTorque, wheel: int) -> Disturbance:
+def load_torque(spec: LoadTorque, wheel: int, rng: np.random.Generator) -> Disturbance:
     """Returns the disturbance that loads the wheel with that index."""
+    size = drawn(spec.size, spec.spread, rng)
 
     def apply(since: Nanos, _: Surroundings, effects: Effects) -> None:
         part = min(1.0, seconds(since) / spec.rise) if spec.shape == "ramp" else 1.0
-        effects.load_torque[wheel] += part * spec.size
+        effects.load_torque[wheel] += part * size
 
     return apply
 
 
-def supply_sag(spec: SupplySag, _: int) -> Disturbance:
+def supply_sag(spec: SupplySag, _: int, rng: np.random.Generator) -> Disturbance:
     """Returns the disturbance that lowers the supply."""
+    size = drawn(spec.size, spec.spread, rng)
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
-        effects.supply_drop += spec.size
+        effects.supply_drop += size
 
     return apply

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
+import numpy as np
+
 from hilbed.clock import nanos
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import NonNegative, Positive, Spec
@@ -17,10 +19,18 @@ NEVER: Nanos = 2**62
 
 
 class DisturbanceBase(Spec):
-    """What every disturbance has: when it starts (s) and how long it lasts (s, for good if left out)."""
+    """What every disturbance has: when it starts (s) and how long it lasts (s, for good if left out).
+
+    A size with a `spread` (standard deviation) is drawn once a run, from the run's seed.
+    """
 
     start: NonNegative = 0.0
     length: Positive | None = None
+
+
+def drawn(size: float, spread: float, rng: np.random.Generator) -> float:
+    """Returns a size for this run: normal round `size` with standard deviation `spread`, the same unit."""
+    return size + spread * float(rng.standard_normal())
 
 
 class Schedule:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import NonNegative
@@ -13,17 +15,17 @@ from hilbed.types import Nanos
 class SpuriousAzimuths(DisturbanceBase):
     """False azimuths: `size` of them in a frame on the average (Poisson)."""
 
-    kind: Literal["spurious-azimuths"] = "spurious-azimuths"
+    kind: Literal["spurious_azimuths"] = "spurious_azimuths"
     size: NonNegative
 
 
 class CameraLoss(DisturbanceBase):
     """The camera delivers no frames."""
 
-    kind: Literal["camera-loss"] = "camera-loss"
+    kind: Literal["camera_loss"] = "camera_loss"
 
 
-def spurious_azimuths(spec: SpuriousAzimuths, _: int) -> Disturbance:
+def spurious_azimuths(spec: SpuriousAzimuths, _: int, __: np.random.Generator) -> Disturbance:
     """Returns the disturbance that adds false azimuths to the frames."""
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
@@ -32,7 +34,7 @@ def spurious_azimuths(spec: SpuriousAzimuths, _: int) -> Disturbance:
     return apply
 
 
-def camera_loss(_: CameraLoss, __: int) -> Disturbance:
+def camera_loss(_: CameraLoss, __: int, ___: np.random.Generator) -> Disturbance:
     """Returns the disturbance that blinds the camera."""
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:

@@ -145,7 +145,7 @@ def _disturbed(
         if disturbance.start >= duration:
             text = f"{place}.start: {disturbance.start:g} s is after the end of the run, {duration:g} s"
             yield Problem(("disturbances", k, "start"), text)
-        if disturbance.kind in ("camera-loss", "spurious-azimuths") and not sensors:
+        if disturbance.kind in ("camera_loss", "spurious_azimuths") and not sensors:
             yield Problem(
                 ("disturbances", k), f"{place}: {disturbance.kind} needs a camera among the sensors"
             )
