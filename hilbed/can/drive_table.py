@@ -15,6 +15,7 @@ from hilbed.spec import Finite, Spec
 from hilbed.types import ScenarioError
 
 TABLES = Path(__file__).parent / "tables"
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast where libyaml is there
 PdoName = Annotated[str, Field(pattern="^[rt]pdo[1-4]$")]
 U8 = Annotated[int, Field(ge=0, le=0xFF)]
 U16 = Annotated[int, Field(ge=0, le=0xFFFF)]
@@ -129,7 +130,7 @@ def load_table(name: str) -> DriveTable:
 def read_table(path: Path) -> DriveTable:
     """Reads a table's file; ScenarioError with the file and all that is wrong in it."""
     try:
-        return DriveTable.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        return DriveTable.model_validate(yaml.load(path.read_text(encoding="utf-8"), _LOADER))
     except (OSError, yaml.YAMLError) as error:
         raise ScenarioError(f"{path}: {error}") from error
     except ValidationError as error:
