@@ -8,6 +8,7 @@ from firmware_sim.entry import key
 from firmware_sim.errors import Errors
 from firmware_sim.frame import Frame
 from firmware_sim.objects.pdo import OFF
+from firmware_sim.watchdog import NEVER
 
 _COB, _INHIBIT = key(0x1014), key(0x1015)
 
@@ -18,7 +19,7 @@ class Emergency:
     def __init__(self, values: dict[int, Any], errors: Errors) -> None:
         self._values = values
         self._errors = errors
-        self._quiet_until = 0
+        self._quiet_until = -NEVER
 
     def flush(self, t: int, talking: bool) -> list[Frame]:
         """Returns the frames that may go out now; a node that may not talk forgets them."""

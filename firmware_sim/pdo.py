@@ -115,7 +115,7 @@ class Tpdo:
     def stop(self) -> None:
         self.due = NEVER
         self._count = 0
-        self._quiet_until = 0
+        self._quiet_until = -NEVER
         self._last: tuple[Any, ...] | None = None
 
     def sync(self) -> Frame | None:

@@ -9,6 +9,7 @@ from firmware_sim.entry import key
 from firmware_sim.frame import Frame
 from firmware_sim.objects.pdo import PDOS, TX_PARAMETERS
 from firmware_sim.pdo import Rpdo, Tpdo
+from firmware_sim.watchdog import NEVER
 
 _WINDOW = key(0x1007)
 
@@ -22,7 +23,7 @@ class ProcessData:
         self._values = values
         self._app = app
         self._running = False
-        self._last_sync = 0
+        self._last_sync = -NEVER
         self.rpdos = [Rpdo(values, number) for number in range(PDOS)]
         self.tpdos = [Tpdo(values, number) for number in range(PDOS)]
         self._cyclic: tuple[Tpdo, ...] = ()

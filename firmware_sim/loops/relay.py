@@ -7,10 +7,10 @@ from firmware_sim.loops.gains import Gains, RelayGains
 
 
 class Relay:
-    __slots__ = ("_gains", "_rate", "_relay", "integral")
+    __slots__ = ("_rate", "_relay", "_slope", "integral")
 
     def __init__(self, gains: Gains, relay: RelayGains) -> None:
-        self._gains = gains
+        self._slope = gains.slope
         self._relay = relay
         self._rate = ErrorRate(gains.rate_filter)
         self.integral = 0.0
@@ -21,11 +21,11 @@ class Relay:
 
     def step(self, ref: float, speed: float, low: float = -1.0, high: float = 1.0) -> float:
         """Returns the duty: A sat(σ/φ), and an integral that carries the load (2011:3 = 0: without)."""
-        gains = self._gains
         amplitude, boundary, ki = self._relay
         error = ref - speed
-        sigma = error + gains.slope * self._rate.step(ref, speed)
+        sigma = error + self._slope * self._rate.step(ref, speed)
         u = amplitude * max(-1.0, min(1.0, sigma / boundary)) + self.integral
-        applied = low if u < low else high if u > high else u
-        self.integral += TICK * (ki * error + gains.anti_windup * (applied - u))
-        return applied
+        # No back-calculation: the switching part is cut off all the time and would bias the integral.
+        integral = self.integral + TICK * ki * error
+        self.integral = low if integral < low else high if integral > high else integral
+        return low if u < low else high if u > high else u

@@ -1,0 +1,302 @@
+"""The state machine: against a table of its own making, and against the canopen library's."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import pytest
+from canopen.profiles.p402 import State402
+
+from firmware_sim.cia402 import TRANSITIONS, Command, State, decode
+from tests.firmware.wire import Wire, enabled, operational
+
+NAMES = {
+    State.NOT_READY: "NOT READY TO SWITCH ON",
+    State.SWITCH_ON_DISABLED: "SWITCH ON DISABLED",
+    State.READY: "READY TO SWITCH ON",
+    State.SWITCHED_ON: "SWITCHED ON",
+    State.ENABLED: "OPERATION ENABLED",
+    State.QUICK_STOP: "QUICK STOP ACTIVE",
+    State.REACTION: "FAULT REACTION ACTIVE",
+    State.FAULT: "FAULT",
+}
+WORDS = {
+    Command.SHUTDOWN: 0x06,
+    Command.SWITCH_ON: 0x07,
+    Command.ENABLE: 0x0F,
+    Command.DISABLE_VOLTAGE: 0x00,
+    Command.QUICK_STOP: 0x02,
+    Command.FAULT_RESET: 0x80,
+}
+
+
+def test_the_library_knows_the_same_states_and_transitions() -> None:
+    for state, name in NAMES.items():
+        mask, bits = State402.SW_MASK[name]
+        assert state & mask == bits
+    theirs = {
+        (before, word): after
+        for (before, after), word in State402.TRANSITIONTABLE.items()
+        if before not in ("START", "NOT READY TO SWITCH ON", "FAULT REACTION ACTIVE")
+    }
+    ours = {(NAMES[s], WORDS[c]): NAMES[t] for (s, c), t in TRANSITIONS.items()}
+    assert theirs.items() <= ours.items()
+    # What the library leaves out: 3 and 4 at once, 7 and 10 by quick stop.
+    assert set(ours) - set(theirs) == {
+        ("READY TO SWITCH ON", 0x0F),
+        ("READY TO SWITCH ON", 0x02),
+        ("SWITCHED ON", 0x02),
+    }
+
+
+@pytest.mark.parametrize("word", range(0, 0x10000, 0x101))
+def test_commands_by_their_bits(word: int) -> None:
+    def bits(pattern: str) -> bool:
+        """The profile's notation: bit 7, then bits 3 to 0, x for any."""
+        actual = f"{word >> 7 & 1}{word & 0xF:04b}"
+        return all(p in ("x", a) for p, a in zip(pattern, actual, strict=True))
+
+    patterns = {
+        Command.SHUTDOWN: "0x110",
+        Command.SWITCH_ON: "00111",
+        Command.ENABLE: "01111",
+        Command.DISABLE_VOLTAGE: "0xx0x",
+        Command.QUICK_STOP: "0x01x",
+    }
+    expected = [command for command, pattern in patterns.items() if bits(pattern)]
+    found = decode(0x80, word)
+    assert [found] == expected or (not expected and found is None)
+    assert (decode(0x00, word) is Command.FAULT_RESET) == bool(word & 0x80)
+
+
+def walk(state: State) -> Wire:
+    """Returns a drive, its wheel turning, that has been led to a state."""
+    wire = (
+        enabled()
+        if state in (State.ENABLED, State.QUICK_STOP, State.REACTION, State.FAULT)
+        else operational()
+    )
+    for word in {State.READY: (6,), State.SWITCHED_ON: (6, 7)}.get(state, ()):
+        wire.command(word)
+    if state is State.QUICK_STOP:
+        wire.node.sdo[0x605A].raw = 6
+        wire.command(0x02)
+    elif state is State.REACTION:
+        wire.command(0x0F, 50_000)
+        wire.run(10, counts_per_tick=50)
+        wire.supply = 40
+        wire.run(5, counts_per_tick=50)
+    elif state is State.FAULT:
+        wire.current = 30_000
+        wire.run(1)
+        wire.current = 0
+    assert wire.state() == NAMES[state]
+    return wire
+
+
+REACHABLE = [state for state in State if state is not State.NOT_READY]
+
+
+@pytest.mark.parametrize(("state", "command"), [*itertools.product(REACHABLE, Command)])
+def test_every_command_in_every_state(state: State, command: Command) -> None:
+    wire = walk(state)
+    wire.node.sdo[0x605C].raw = 0  # disable operation: at once
+    expected = TRANSITIONS.get((state, command), state)
+    wire.command(WORDS[command])
+    assert wire.state() == NAMES[expected]
+    assert wire.drive.bridge_enabled == (expected in (State.ENABLED, State.QUICK_STOP, State.REACTION))
+
+
+def test_fault_reset_acts_by_its_edge() -> None:
+    wire = walk(State.FAULT)
+    wire.command(0x80)
+    assert wire.state() == "SWITCH ON DISABLED"
+    for word in (0x06, 0x07, 0x0F):
+        wire.command(word)
+    wire.command(0x8F)
+    wire.current = 30_000
+    wire.run(1)
+    wire.current = 0
+    wire.command(0x8F)
+    assert wire.state() == "FAULT"  # the bit has been up all the time
+    wire.command(0x00)
+    wire.command(0x80)
+    assert wire.state() == "SWITCH ON DISABLED"
+
+
+def moving() -> Wire:
+    wire = enabled()
+    wire.command(0x0F, 50_000)
+    wire.run(10)
+    return wire
+
+
+def falling(wire: Wire, ticks: int = 10) -> float:
+    """Returns how fast the reference shrinks, rad/s²; infinite where it falls at once."""
+    before = wire.drive.speed_ref
+    wire.run(ticks)
+    after = wire.drive.speed_ref
+    return (before - after) / (ticks * 1e-3) if after else math.inf
+
+
+SLOW, QUICK = 105_000 / 66_000 * math.tau, 525_000 / 66_000 * math.tau
+
+
+@pytest.mark.parametrize(
+    ("option", "rate", "end"),
+    [
+        (0, None, "SWITCH ON DISABLED"),
+        (1, SLOW, "SWITCH ON DISABLED"),
+        (2, QUICK, "SWITCH ON DISABLED"),
+        (3, math.inf, "SWITCH ON DISABLED"),
+        (5, SLOW, "QUICK STOP ACTIVE"),
+        (6, QUICK, "QUICK STOP ACTIVE"),
+        (7, math.inf, "QUICK STOP ACTIVE"),
+    ],
+)
+def test_quick_stop_options(option: int, rate: float | None, end: str) -> None:
+    wire = moving()
+    wire.node.sdo[0x605A].raw = option
+    wire.command(0x02)
+    if rate is None:
+        assert not wire.drive.bridge_enabled
+    elif rate == math.inf:
+        wire.run(1)
+        assert wire.drive.speed_ref == 0.0
+    else:
+        assert wire.state() == "QUICK STOP ACTIVE"
+        wire.command(0x02)  # said again it changes nothing
+        assert falling(wire) == pytest.approx(rate, rel=1e-3)
+    wire.run(600)
+    assert wire.state() == end
+    assert wire.drive.speed_ref == 0.0
+
+
+@pytest.mark.parametrize(
+    ("word", "option", "end"), [(0x06, 0x605B, "READY TO SWITCH ON"), (0x07, 0x605C, "SWITCHED ON")]
+)
+def test_leaving_operation_at_once_or_by_a_ramp(word: int, option: int, end: str) -> None:
+    wire = moving()
+    wire.node.sdo[option].raw = 0
+    wire.command(word)
+    assert not wire.drive.bridge_enabled
+    wire = moving()
+    wire.node.sdo[option].raw = 1
+    wire.command(word)
+    assert falling(wire) == pytest.approx(SLOW, rel=1e-3)
+    assert wire.state() == "OPERATION ENABLED"
+    wire.run(600)
+    assert wire.state() == end
+
+
+def test_a_ramp_out_of_operation_can_be_taken_back() -> None:
+    wire = moving()
+    wire.command(0x07, 50_000)
+    wire.run(50)
+    assert wire.drive.speed_ref < 4.5
+    wire.command(0x0F, 50_000)
+    wire.run(600)
+    assert wire.state() == "OPERATION ENABLED"
+    assert wire.drive.speed_ref > 4.7
+
+
+def test_a_quick_stop_that_ends_disabled_cannot() -> None:
+    wire = moving()
+    wire.command(0x02, 50_000)
+    wire.command(0x0F, 50_000)
+    assert wire.state() == "QUICK STOP ACTIVE"
+    wire.run(200)
+    assert wire.state() == "SWITCH ON DISABLED"
+
+
+def test_a_wheel_that_something_keeps_turning_is_let_go() -> None:
+    wire = moving()
+    wire.command(0x02)
+    wire.run(1090, counts_per_tick=20)
+    assert wire.state() == "QUICK STOP ACTIVE"
+    wire.run(20, counts_per_tick=20)
+    assert wire.state() == "SWITCH ON DISABLED"
+
+
+@pytest.mark.parametrize(("option", "rate"), [(1, SLOW), (2, QUICK)])
+def test_halt(option: int, rate: float) -> None:
+    wire = moving()
+    wire.node.sdo[0x605D].raw = option
+    wire.command(0x10F, 50_000)
+    assert falling(wire) == pytest.approx(rate, rel=1e-3)
+    wire.run(600)
+    assert (wire.state(), wire.drive.speed_ref) == ("OPERATION ENABLED", 0.0)
+    assert wire.node.sdo[0x6041].raw & 0x0400
+    wire.command(0x00F, 50_000)
+    wire.run(1)
+    assert wire.drive.speed_ref > 4.7
+
+
+@pytest.mark.parametrize(("option", "rate"), [(0, None), (1, SLOW), (2, QUICK), (3, math.inf)])
+def test_fault_reaction_options(option: int, rate: float | None) -> None:
+    wire = moving()
+    wire.node.sdo[0x605E].raw = option
+    wire.supply = 40  # 10 V
+    wire.run(4)
+    assert wire.state() == "OPERATION ENABLED"  # a short sag is no fault
+    wire.run(1)
+    if rate is None:
+        assert not wire.drive.bridge_enabled
+    elif rate == math.inf:
+        wire.run(1)
+        assert wire.drive.speed_ref == 0.0
+    else:
+        assert wire.state() == "FAULT REACTION ACTIVE"
+        assert falling(wire) == pytest.approx(rate, rel=1e-3)
+    wire.run(600)
+    assert wire.state() == "FAULT"
+    assert [e.code for e in wire.node.emcy.log] == [0x3220]
+    assert wire.node.sdo[0x1001].raw == 0x05
+    wire.supply = 96
+    wire.command(0x80)
+    wire.run(1)
+    assert [e.code for e in wire.node.emcy.log] == [0x3220, 0]
+    assert (wire.node.sdo[0x1001].raw, wire.node.sdo[0x603F].raw) == (0, 0)
+
+
+@pytest.mark.parametrize("current", [20_100, -20_100])
+def test_overcurrent_opens_the_chopper_in_the_same_tick(current: int) -> None:
+    wire = moving()
+    wire.current = current
+    wire.run(1)
+    assert not wire.drive.bridge_enabled
+    assert wire.duty == 0
+    assert wire.state() == "FAULT"
+    assert [e.code for e in wire.node.emcy.log] == [0x2310]
+    assert wire.node.sdo[0x1001].raw == 0x03
+
+
+def test_short_sags_do_not_add_up() -> None:
+    wire = moving()
+    for _ in range(10):
+        wire.supply = 40
+        wire.run(4)
+        wire.supply = 96
+        wire.run(1)
+    assert wire.state() == "OPERATION ENABLED"
+
+
+def test_the_library_walks_the_state_machine() -> None:
+    wire = operational()
+    node = wire.node
+    for target in (
+        "READY TO SWITCH ON",
+        "SWITCHED ON",
+        "OPERATION ENABLED",
+        "SWITCHED ON",
+        "SWITCH ON DISABLED",
+    ):
+        while wire.state() != target:
+            step = node._next_state(target) if (wire.state(), target) in State402.TRANSITIONTABLE else None
+            step = step or State402.next_state_indirect(wire.state())
+            node.sdo[0x6040].raw = State402.TRANSITIONTABLE[wire.state(), step]
+            wire.run(1)
+    assert node.is_op_mode_supported("PROFILED VELOCITY")
+    assert node.is_op_mode_supported("CYCLIC SYNCHRONOUS VELOCITY")
+    assert not node.is_op_mode_supported("CYCLIC SYNCHRONOUS POSITION")
