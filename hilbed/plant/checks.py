@@ -22,7 +22,11 @@ GEAR = GEARS["gp32c-33"]
 RADIUS, TRACK = 0.1, 0.4
 # Of urdf/diffdrive.urdf: all of it (kg), a wheel's spin, all about the vertical through the axle (kg m²).
 MASS, WHEEL_SPIN = 9.0, 0.0025
-TURNING = 0.1749 + 8.0 * 0.04**2 + 2 * (0.001317 + 0.5 * 0.2**2)
+TURNING = 0.1749 + 8.0 * 0.06**2 + 2 * (0.001317 + 0.5 * 0.2**2)
+# Centre of mass behind the axle and over the ground (m), and what each wheel carries at rest (N).
+BEHIND = 8.0 * 0.06 / MASS
+HEIGHT = (8.0 * 0.08 + 2 * 0.5 * RADIUS) / MASS
+CARRIED = 9.81 * MASS * (1.0 - BEHIND / 0.2) / 2
 SPIN = WHEEL_SPIN + reflected_inertia(MOTOR, GEAR)
 # What a wheel has to move going straight on.
 SHARE = SPIN + MASS * RADIUS**2 / 2
@@ -73,10 +77,10 @@ def slip_onset(friction: float = 0.3, yaw: float = 0.7) -> float:
     robot = world(BulletSpec(friction=friction), Pose(0.0, 0.0, yaw))
     effects = Effects([friction, friction])
     share = 1.0 + 2.0 * SPIN / (MASS * RADIUS**2)
-    # Half of what the wheels hold at rest; the load moves from them to the caster as the robot accelerates.
-    torque = 0.5 * friction * 36.3 * RADIUS * share
+    # Below onset: accelerating takes load off the wheels, by height over length of the base.
+    torque = 0.9 * friction * CARRIED / (1.0 + friction * HEIGHT / 0.2) * RADIUS * share
     while max(robot.slips) < 2e-4:
-        torque += 0.2 * DT
+        torque += 0.5 * DT
         robot.step([torque, torque], NONE, effects)
     onset = friction * sum(robot.normal_forces()) / 2 * RADIUS * share
     robot.close()

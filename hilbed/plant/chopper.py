@@ -53,7 +53,7 @@ class Stage(Protocol):
     def drive(self, current: float, duty: float, supply: float, emf: float, ramp: float) -> Tick:
         """Runs a tick with the bridge on, from `current` (A) and with `supply` (V) held.
 
-        emf: V at mid-tick; ramp: V by which it rises over the tick.
+        emf: V at mid-tick; ramp: V by which it rises over the tick (in the heat to first order only).
         """
         ...
 

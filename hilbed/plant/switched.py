@@ -68,8 +68,10 @@ class SwitchedStage:
 
     def _one_period(self, current: float, duty: float, supply: float, emf: float) -> float:
         """Runs off/2, dead, on, dead, off/2; currents and voltages in the direction of the duty."""
-        on, off, dead = self._times(duty)
         self._low = self._high = current
+        if abs(current) >= self._limit:
+            return self._trip(current, supply, emf)
+        on, off, dead = self._times(duty)
         current = self._conduct(current, -emf, 0.5 * off)
         current = self._freewheel(current, supply, emf, dead)
         current, cut = self._drive(current, supply, emf, on)
@@ -113,6 +115,16 @@ class SwitchedStage:
         end, charge, square = through_diodes(current, rails, self._resistance, self._tau, duration)
         self._diode_charge += abs(charge)
         self._drawn += min(charge, 0.0)
+        return self._note(end, charge, square)
+
+    def _trip(self, current: float, supply: float, emf: float) -> float:
+        """Opens the whole bridge for a period: what a current beyond the limit, braking, comes to."""
+        drops = supply + 2.0 * self._diode
+        end, charge, square = through_diodes(
+            current, (-drops - emf, drops - emf), self._resistance, self._tau, self._period
+        )
+        self._diode_charge += 2.0 * abs(charge)
+        self._drawn -= abs(charge)
         return self._note(end, charge, square)
 
     def _note(self, end: float, charge: float, square: float) -> float:
