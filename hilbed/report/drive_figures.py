@@ -1,0 +1,66 @@
+"""Figures of the drives: speeds, duties, currents, slip."""
+
+from __future__ import annotations
+
+from hilbed.report import style
+from hilbed.report.run import Run
+
+
+def speeds(run: Run) -> str | None:
+    """Returns each wheel's speed over its reference; None without drives."""
+    names = [name for name in run.signals.drives() if _has(run, name, "speed_ref")]
+    if not names:
+        return None
+    figure, axes = style.sheet(len(names), 1.2 + 1.5 * len(names))
+    for one, name, colour in zip(axes, names, style.DRIVES, strict=False):
+        measured = "speed" if _has(run, name, "speed") else "speed_measured"
+        t, reference = _column(run, name, "speed_ref")
+        one.plot(t, reference, color=style.STAND_IN["reference"], linewidth=2.6, label="reference")
+        t, speed = _column(run, name, measured)
+        one.plot(t, speed, color=style.STAND_IN[colour], linewidth=0.9, label=name)
+        one.set_ylabel("speed  [rad/s]")
+        style.legend(one)
+    style.on_time(axes, run.signals["t"], run.spans)
+    return style.svg(figure, "wheel speeds and references")
+
+
+def efforts(run: Run) -> str | None:
+    """Returns duties, currents and load torques of all drives; None where the run has none of them."""
+    return _stacked(
+        run,
+        (("duty", "duty", 100.0, "%"), ("current", "current", 1.0, "A"), ("load_torque", "load", 1.0, "N m")),
+        "duties, currents and load torques",
+    )
+
+
+def slip(run: Run) -> str | None:
+    """Returns the slip of all wheels; None where the plant has none."""
+    return _stacked(run, (("slip", "slip", 100.0, "cm/s"),), "slip of the wheels")
+
+
+def _stacked(run: Run, fields: tuple[tuple[str, str, float, str], ...], label: str) -> str | None:
+    drives = run.signals.drives()
+    rows = [field for field in fields if any(_has(run, name, field[0]) for name in drives)]
+    if not rows:
+        return None
+    figure, axes = style.sheet(len(rows), 1.0 + 1.25 * len(rows))
+    for one, (field, word, scale, unit) in zip(axes, rows, strict=True):
+        for name, colour in zip(drives, style.DRIVES, strict=False):
+            if _has(run, name, field):
+                t, column = _column(run, name, field)
+                one.plot(t, column * scale, color=style.STAND_IN[colour], linewidth=0.9, label=name)
+        one.set_ylabel(f"{word}  [{unit}]")
+    style.legend(axes[0])
+    style.on_time(axes, run.signals["t"], run.spans)
+    return style.svg(figure, label)
+
+
+def _has(run: Run, drive: str, field: str) -> bool:
+    return f"drive/{drive}/{field}" in run.signals or f"tick/drive/{drive}/{field}" in run.signals
+
+
+def _column(run: Run, drive: str, field: str) -> tuple[style.Column, ...]:
+    column = run.signals.drive(drive, field)
+    tick = run.signals.get("tick/t")
+    t = tick if tick is not None and len(tick) == len(column) else run.signals["t"]
+    return style.thinned(t, column)

@@ -1,0 +1,186 @@
+"""The page around the figures: banner, tables, camera frames; plain HTML without a script."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Mapping
+from html import escape
+from typing import Any
+
+from hilbed.criteria import METRICS
+from hilbed.record.folder import CAN, MCAP, SIGNALS, VERDICT
+from hilbed.report.run import Run, Shot
+from hilbed.report.style import COLOURS, Theme
+
+_PARTS = ("#6b8afd", "#42b3a4", "#e2a03f", "#d9698a", "#9a7bd8", "#5fa8d3", "#8fb04e", "#9aa5b4", "#c3c9d2")
+
+
+def card(title: str, body: str | None, note: str = "", wide: bool = False) -> str:
+    """Returns a section of the page; nothing where there is no body."""
+    if body is None:
+        return ""
+    head = f"<h2>{escape(title)}</h2>" + (f'<p class="note">{note}</p>' if note else "")
+    return f'<section class="card{" wide" if wide else ""}">{head}{body}</section>\n'
+
+
+def banner(run: Run) -> str:
+    """Returns the head of the page: what ran, whether it passed, and why not."""
+    verdict = run.verdict
+    word, kind = ("passed", "good") if verdict["passed"] else ("failed", "bad")
+    reason = f'<p class="reason">{escape(str(verdict["reason"]))}</p>' if verdict.get("reason") else ""
+    facts = [
+        ("simulated", _number(verdict["sim_time"]), "s"),
+        ("wall time", _number(verdict["wall_time"]), "s"),
+    ]
+    if verdict.get("real_time_factor"):
+        facts.append(("real time", f"{verdict['real_time_factor']:.1f}", "×"))
+    tiles = "".join(f"<div><dt>{a}</dt><dd>{b}<small> {c}</small></dd></div>" for a, b, c in facts)
+    return (
+        f'<header class="{kind}"><div><h1>{escape(str(verdict["scenario"]))}'
+        f"<small> seed {escape(str(verdict['seed']))}</small></h1>{reason}</div>"
+        f'<span class="pill">{word}</span><dl>{tiles}</dl></header>\n'
+    )
+
+
+def criteria(run: Run) -> str | None:
+    """Returns the table of criteria, each with a bar of how much of its limit is used."""
+    entries = run.verdict.get("criteria") or {}
+    if not entries:
+        return None
+    rows = "".join(_criterion(name, entry) for name, entry in entries.items())
+    return f'<table class="criteria"><tbody>{rows}</tbody></table>'
+
+
+def _criterion(name: str, entry: Mapping[str, Any]) -> str:
+    value, limit = entry["value"], entry["limit"]
+    upper = entry.get("bound", "max") == "max"
+    used = 1.0 if value is None else _share(value, limit) if upper else _share(limit, value)
+    kind, word = ("good", "pass") if entry["passed"] else ("bad", "fail")
+    shown = "none" if value is None else _number(value)
+    return (
+        f'<tr class="{kind}"><th>{escape(name)}</th><td class="number">{shown}</td>'
+        f'<td class="number limit">{"≤" if upper else "≥"} {_number(limit)}</td>'
+        f'<td class="bar"><i style="width:{100 * used:.0f}%"></i></td><td class="word">{word}</td></tr>'
+    )
+
+
+def _share(part: float, whole: float) -> float:
+    return min(max(part / whole, 0.0), 1.0) if whole else 1.0
+
+
+def disturbances(run: Run) -> str:
+    """Returns the key to the letters over the figures."""
+    if not run.spans:
+        return ""
+    chips = "".join(
+        f"<li><b>{span.letter}</b> {escape(span.about)} <small>{span.start:g}–{span.end:g} s</small></li>"
+        for span in run.spans
+    )
+    return f'<ul class="chips">{chips}</ul>\n'
+
+
+def shots(run: Run) -> str | None:
+    """Returns the camera frames with a line at every detection; None without a camera."""
+    if not run.shots:
+        return None
+    return f'<div class="shots">{"".join(_shot(shot) for shot in run.shots)}</div>'
+
+
+def _shot(shot: Shot) -> str:
+    width, height = (int.from_bytes(shot.png[k : k + 4], "big") for k in (16, 20))  # of the PNG's header
+    lines = "".join(
+        f'<line x1="{x + 0.5:.1f}" x2="{x + 0.5:.1f}" y1="0" y2="{height}"/>'
+        + ("" if beacon is None else f'<text x="{x + 4:.1f}" y="12">{beacon}</text>')
+        for x, beacon in zip(shot.pixels, shot.beacons, strict=True)
+    )
+    picture = f'<image width="{width}" height="{height}" href="data:image/png;base64,{_base64(shot.png)}"/>'
+    return (
+        f'<figure><svg role="img" aria-label="camera at {shot.t:.1f} s" viewBox="0 0 {width} {height}">'
+        f"{picture}{lines}</svg><figcaption>t = {shot.t:.1f} s</figcaption></figure>"
+    )
+
+
+def _base64(data: bytes) -> str:
+    return b64encode(data).decode()
+
+
+def cost(run: Run) -> str | None:
+    """Returns where the wall time went, as one bar and a table."""
+    parts = {name: value for name, value in (run.verdict.get("cost") or {}).items() if value}
+    wall = run.verdict.get("wall_time") or 0.0
+    if not parts or not wall:
+        return None
+    parts["the rest"] = max(wall - sum(parts.values()), 0.0)
+    bar = rows = ""
+    for (name, value), colour in zip(parts.items(), _PARTS, strict=False):
+        share = 100 * value / max(wall, sum(parts.values()))
+        bar += f'<i style="width:{share:.2f}%;background:{colour}" title="{escape(name)}"></i>'
+        rows += (
+            f'<tr><th><i class="dot" style="background:{colour}"></i>{escape(name)}</th>'
+            f'<td class="number">{_number(value)} s</td><td class="number">{share:.1f} %</td></tr>'
+        )
+    return f'<div class="stack">{bar}</div><table><tbody>{rows}</tbody></table>'
+
+
+def metrics(run: Run) -> str | None:
+    """Returns every metric with its unit and its meaning."""
+    found = run.verdict.get("metrics") or {}
+    if not found:
+        return None
+    rows = "".join(_metric(name, value) for name, value in found.items())
+    return f'<div class="scroll"><table class="metrics"><tbody>{rows}</tbody></table></div>'
+
+
+def _metric(name: str, value: float | None) -> str:
+    metric = METRICS.get(name) or METRICS.get(name.rpartition(".")[2])
+    about, unit = (metric.about, metric.unit) if metric else ("", "")
+    shown = "none" if value is None else f"{_number(value)} {unit}"
+    cells = f'<td class="number">{shown}</td><td class="about">{escape(about)}</td>'
+    return f"<tr><th>{escape(name)}</th>{cells}</tr>"
+
+
+def files(run: Run) -> str:
+    """Returns links to what else is in the folder, and the fingerprints of the run."""
+    names = [name for name in (MCAP, CAN, SIGNALS, VERDICT) if (run.folder / name).exists()]
+    links = " · ".join(f'<a href="{name}">{name}</a>' for name in names)
+    prints = "<br>".join(
+        f"{key} <code>{escape(str(run.verdict.get(key, '')))}</code>" for key in ("hash", "signals_hash")
+    )
+    return f'<p class="files">{links}</p><p class="files">{prints}</p>'
+
+
+def document(run: Run, body: str) -> str:
+    """Returns the whole page."""
+    title = escape(f"{run.verdict['scenario']}, seed {run.verdict['seed']}")
+    return (
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{title} · hilbed</title><style>{_variables()}{_sheet()}</style></head>\n"
+        f"<body><main>{body}</main></body></html>\n"
+    )
+
+
+def _sheet() -> str:
+    from importlib.resources import files as resources
+
+    return resources("hilbed.report").joinpath("page.css").read_text(encoding="utf-8")
+
+
+def _variables() -> str:
+    def block(index: int) -> str:
+        return "".join(f"--{name}:{theme[index]};" for name, theme in (COLOURS | _SURFACES).items())
+
+    dark = f"@media (prefers-color-scheme:dark){{:root{{{block(1)}}}}}"
+    return f":root{{color-scheme:light dark;{block(0)}}}{dark}"
+
+
+_SURFACES = {
+    "page": Theme("#f3f5f8", "#101317"),
+    "card": Theme("#ffffff", "#191d23"),
+    "soft": Theme("#eef1f5", "#232932"),
+}
+
+
+def _number(value: float) -> str:
+    """Returns a number with four digits that mean something."""
+    return f"{value:.4g}"

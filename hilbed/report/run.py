@@ -1,0 +1,125 @@
+"""A run folder as the report reads it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+from zipfile import BadZipFile
+
+import numpy as np
+import yaml
+
+from hilbed.criteria import Signals
+from hilbed.record.folder import FRAMES, SCENARIO, SIGNALS, VERDICT
+from hilbed.record.frames import INDEX
+from hilbed.types import HilbedError
+
+
+class ReportError(HilbedError):
+    """A run folder that cannot be read."""
+
+
+class Span(NamedTuple):
+    """A disturbance on the time axis: a letter for the plots, what it is, from and to (s)."""
+
+    letter: str
+    about: str
+    start: float
+    end: float
+
+
+class Beacon(NamedTuple):
+    """A beacon on the map: place (m) and the name of its colour."""
+
+    x: float
+    y: float
+    colour: str
+
+
+class Shot(NamedTuple):
+    """A camera frame: time (s), PNG, columns of the detections and the beacons they were taken for."""
+
+    t: float
+    png: bytes
+    pixels: tuple[float, ...]
+    beacons: tuple[int | None, ...]
+
+
+class Run(NamedTuple):
+    """Everything that the report shows; parts that the run lacks are empty."""
+
+    folder: Path
+    scenario: str
+    verdict: Mapping[str, Any]
+    signals: Signals
+    spans: tuple[Span, ...]
+    beacons: tuple[Beacon, ...]
+    shots: tuple[Shot, ...]
+
+
+def read_run(folder: Path) -> Run:
+    """Reads a run folder; raises ReportError naming the file that is missing or broken."""
+    if not folder.is_dir():
+        raise ReportError(f"{folder} is not a folder")
+    text = _read(folder / SCENARIO).decode(errors="replace")
+    scenario = _parsed(folder / SCENARIO, lambda: yaml.safe_load(text))
+    verdict = _parsed(folder / VERDICT, lambda: json.loads(_read(folder / VERDICT)))
+    signals = _parsed(folder / SIGNALS, lambda: _signals(folder / SIGNALS))
+    shots = _parsed(folder / FRAMES, lambda: _shots(folder / FRAMES))
+    spans = _parsed(folder / SCENARIO, lambda: _spans(scenario))
+    beacons = _parsed(folder / SCENARIO, lambda: _beacons(scenario))
+    return Run(folder, text, verdict, signals, spans, beacons, shots)
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ReportError(f"{path}: {error.strerror}; is {path.parent} a run folder?") from error
+
+
+def _parsed(path: Path, parse: Any) -> Any:
+    try:
+        return parse()
+    except (ValueError, KeyError, TypeError, AttributeError, yaml.YAMLError, BadZipFile, EOFError) as error:
+        raise ReportError(f"{path} is not what a run writes: {error}") from error
+
+
+def _signals(path: Path) -> Signals:
+    _read(path)
+    with np.load(path, allow_pickle=False) as archive:
+        signals = Signals(archive)
+    if "t" not in signals:
+        raise ValueError("it holds no column t")
+    return signals
+
+
+def _shots(folder: Path) -> tuple[Shot, ...]:
+    if not (folder / INDEX).exists():
+        return ()
+    entries = [json.loads(line) for line in _read(folder / INDEX).splitlines()]
+    return tuple(
+        Shot(one["t"], _read(folder / Path(one["file"]).name), tuple(one["pixels"]), tuple(one["beacons"]))
+        for one in entries
+    )
+
+
+def _spans(scenario: Mapping[str, Any]) -> tuple[Span, ...]:
+    spans = []
+    for k, block in enumerate(scenario.get("disturbances") or []):
+        words = [str(block["kind"]).replace("_", " "), *([str(block["drive"])] if "drive" in block else [])]
+        start = float(block.get("start", 0.0))
+        spans.append(
+            Span(chr(65 + k % 26), " · ".join(words), start, start + float(block.get("length", 0.0)))
+        )
+    return tuple(spans)
+
+
+def _beacons(scenario: Mapping[str, Any]) -> tuple[Beacon, ...]:
+    blocks = (scenario.get("plant") or {}).get("beacons") or []
+    return tuple(
+        Beacon(float(block["at"][0]), float(block["at"][1]), str(block.get("colour", "red")))
+        for block in blocks
+    )
