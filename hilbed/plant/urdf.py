@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -14,13 +15,24 @@ Element = ElementTree.Element
 class Body(NamedTuple):
     """A robot ready for the physics.
 
-    text: URDF; joints: names of the wheel joints in the order of the drives; radius, track: m.
+    text: URDF without visuals; joints: names of the wheel joints in the order of the drives; radius and track
+    m; mass kg, of all of it; spin kg m², of one wheel about its axle.
     """
 
     text: str
     joints: tuple[str, ...]
     radius: float
     track: float
+    mass: float
+    spin: float
+
+
+def moved_inertia(body: Body, reflected: float) -> float:
+    """Returns what each wheel has to turn as the robot goes straight on (kg m²), the robot's mass included.
+
+    reflected: kg m² that turns with a wheel behind its gear.
+    """
+    return body.spin + reflected + body.mass * body.radius**2 / len(body.joints)
 
 
 def read_urdf(path: Path) -> Element:
@@ -43,16 +55,20 @@ def diffdrive(path: Path, radius: float, track: float) -> Body:
     """Instantiates the two-wheel robot of a URDF with another wheel radius and track (m).
 
     base_link lies on the ground below the midpoint of the axle. Wheels move to ±track/2 and to the height of
-    their radius, their shapes and inertia scale with it. Raises ScenarioError.
+    their radius, their treads and inertia scale with it. Raises ScenarioError.
     """
     root = read_urdf(path)
     joints = ("left_wheel_joint", "right_wheel_joint")
     for name, side in zip(joints, (0.5, -0.5), strict=True):
         joint, wheel = _wheel(path, root, name, joints)
         joint.find("origin").set("xyz", f"0 {side * track!r} {radius!r}")  # type: ignore[union-attr]
-        _scale_wheel(path, wheel, radius)
+        spin = _scale_wheel(path, wheel, radius)
     _drop_frames(root)
-    return Body(ElementTree.tostring(root, encoding="unicode"), joints, radius, track)
+    for link in root.iterfind("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
+    mass = sum(_number(path, mass, "value") for mass in root.iter("mass"))
+    return Body(ElementTree.tostring(root, encoding="unicode"), joints, radius, track, mass, spin)
 
 
 def _wheel(path: Path, root: Element, name: str, wanted: tuple[str, ...]) -> tuple[Element, Element]:
@@ -73,8 +89,8 @@ def _wheel(path: Path, root: Element, name: str, wanted: tuple[str, ...]) -> tup
     return joint, link
 
 
-def _scale_wheel(path: Path, wheel: Element, radius: float) -> None:
-    """Takes a wheel to another radius: every radius in proportion, inertia with its square at equal mass."""
+def _scale_wheel(path: Path, wheel: Element, radius: float) -> float:
+    """Takes a wheel to another radius, inertia with its square at equal mass; returns that of its spin."""
     tread = wheel.find("collision/geometry/sphere")
     if tread is None:
         shape = wheel.find("collision/geometry/*")
@@ -84,20 +100,22 @@ def _scale_wheel(path: Path, wheel: Element, radius: float) -> None:
     if inertia is None:
         raise ScenarioError(f"{path}: {wheel.get('name')} has no <inertial> with mass and inertia")
     factor = radius / _number(path, tread, "radius")
-    for shape in wheel.iterfind(".//geometry/*[@radius]"):
-        shape.set("radius", repr(_number(path, shape, "radius") * factor))
-    for box in wheel.iterfind(".//geometry/box"):
-        box.set("size", " ".join(repr(float(side) * factor) for side in box.get("size", "").split()))
+    tread.set("radius", repr(radius))
     for axis in ("ixx", "iyy", "izz"):
         inertia.set(axis, repr(_number(path, inertia, axis) * factor**2))
+    return _number(path, inertia, "iyy")
 
 
 def _number(path: Path, element: Element, key: str) -> float:
+    """Returns an attribute that only makes sense as a positive number."""
     text = element.get(key, "nothing")
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
-        raise ScenarioError(f"{path}: <{element.tag} {key}>: {text} is not a number") from None
+        number = 0.0
+    if not 0.0 < number < inf:
+        raise ScenarioError(f"{path}: <{element.tag} {key}> is {text}, not a positive number")
+    return number
 
 
 def _drop_frames(root: Element) -> None:
