@@ -72,16 +72,26 @@ def test_tracking_follows_the_beacon_it_was_given() -> None:
     beacons = (BeaconSpec(at=(4.0, 0.4), colour="red"), BeaconSpec(at=(4.0, -2.0), colour="green"))
     assert pans({"kind": "tracking", "beacon": 1}, 20, beacons)[-1] == pytest.approx(atan2(-2.0, 4.0))
     assert pans({"kind": "tracking"}, 20, beacons)[-1] == pytest.approx(atan2(0.4, 4.0))
+    assert pans({"kind": "tracking", "angle": -0.6}, 20, beacons)[-1] == pytest.approx(atan2(-2.0, 4.0))
+
+
+def test_tracking_stays_with_the_beacon_it_had_though_another_comes_nearer_to_the_middle() -> None:
+    beacons = (BeaconSpec(at=(4.0, 1.0), colour="red"), BeaconSpec(at=(4.0, -1.0), colour="green"))
+    bench = Bench({"pan": {"kind": "tracking", "rate": 0.2, "angle": 0.2}}, beacons)
+    for k in range(40):
+        bench.expose(1, Pose(0.0, 0.0, min(0.04 * k, 0.4)))
+    assert bench.pans[-1] == pytest.approx(atan2(1.0, 4.0) - 0.4)
 
 
 def test_tracking_knows_nothing_while_the_camera_is_blind() -> None:
-    """With a beacon right ahead it would stand still: it scans since its own frames show nothing."""
+    """With a beacon right ahead it stands still; once blind it scans, since its own frames show nothing."""
     bench = Bench({"pan": {"kind": "tracking", "rate": 1.0}}, (BeaconSpec(at=(4.0, 0.0)),))
+    bench.expose(3)
     bench.effects.blind = True
     bench.expose(5)
     bench.effects.blind = False
-    bench.expose(1)
-    assert bench.pans == [pytest.approx(0.5 - 0.0)]
+    bench.expose(3)
+    assert bench.pans == pytest.approx([0.0, 0.0, 0.0, 0.5, 0.4, 0.3])
 
 
 def test_tracking_keeps_a_beacon_in_view_of_a_turning_robot_on_rendered_frames() -> None:

@@ -59,6 +59,20 @@ def test_azimuths_from_2_to_8_m_are_exact_and_say_how_exact() -> None:
     assert 0.7 <= np.sqrt(np.mean((error / stated) ** 2)) <= 1.3
 
 
+def test_no_bias_where_left_and_right_edge_differ_in_depression() -> None:
+    """Beacons near the border of a tall image, well below the camera: a plain mean is 57 mdeg off."""
+    lens, eye = Lens(640, 480, pi / 2), (0.0, 0.0, 1.0)
+    millidegrees = []
+    for azimuth in np.linspace(0.45, 0.7, 60):
+        spec = beacon(float(azimuth), 1.0)
+        camera = renderer([spec], lens)
+        (detection,) = ColourDetector(lens, [spec]).detect(camera.render(*eye, 0.0))
+        camera.close()
+        millidegrees.append(1e3 * degrees(detection.azimuth - true_azimuth(spec, lens, eye, 0.0)))
+    assert abs(np.mean(millidegrees)) <= 2.0
+    assert np.std(millidegrees) <= 10.0
+
+
 def test_cylinders_are_coarser_and_say_so() -> None:
     rng = np.random.default_rng(5)
     normalised, millidegrees = [], []
