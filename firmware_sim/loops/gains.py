@@ -23,6 +23,6 @@ class Gains(NamedTuple):
 class RelayGains(NamedTuple):
     """Amplitude (duty), boundary layer (rad/s), integral gain (1/s)."""
 
-    amplitude: float = 0.5
-    boundary: float = 0.1
+    amplitude: float = 0.15
+    boundary: float = 0.3
     ki: float = 1.5

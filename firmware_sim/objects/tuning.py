@@ -34,8 +34,8 @@ TUNING: tuple[Object, ...] = (
     record(
         0x2011,
         "Relay sliding mode",
-        Entry(1, "Amplitude in duty", REAL32, "rw", 0.5, 0.0, 1.0),
-        Entry(2, "Boundary layer in rad/s", REAL32, "rw", 0.1, 0.001, 100.0),
+        Entry(1, "Amplitude in duty", REAL32, "rw", 0.15, 0.0, 1.0),
+        Entry(2, "Boundary layer in rad/s", REAL32, "rw", 0.3, 0.001, 100.0),
         Entry(3, "Integral gain in 1/s", REAL32, "rw", 1.5, 0.0, 1000.0),
     ),
     record(

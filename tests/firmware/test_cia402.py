@@ -294,7 +294,7 @@ def test_the_library_walks_the_state_machine() -> None:
     ):
         while wire.state() != target:
             step = node._next_state(target) if (wire.state(), target) in State402.TRANSITIONTABLE else None
-            step = step or State402.next_state_indirect(wire.state())
+            step = step or State402.next_state_indirect(wire.state())  # type: ignore[no-untyped-call]
             node.sdo[0x6040].raw = State402.TRANSITIONTABLE[wire.state(), step]
             wire.run(1)
     assert node.is_op_mode_supported("PROFILED VELOCITY")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import canopen
+from canopen.profiles.p402 import BaseNode402, State402
 
 from firmware_sim import Drive, Frame
 from firmware_sim.eds import PATH
@@ -15,7 +17,13 @@ SYNC = 0x80
 SUPPLY = 96  # 24 V in quarters
 
 
-class Wire(canopen.Network):  # type: ignore[misc]
+@cache
+def sheet(node: int) -> canopen.ObjectDictionary:
+    """Returns the data sheet as the library reads it."""
+    return canopen.import_od(str(PATH), node)
+
+
+class Wire(canopen.Network):
     """Hands every message of the master to the drive, and what the drive sends to the master, at once.
 
     `t` is the bench's time (ns); `sent` is all that the drive has sent so far.
@@ -28,7 +36,8 @@ class Wire(canopen.Network):  # type: ignore[misc]
         self.counts = self.current = self.duty = 0
         self.supply = SUPPLY
         self.sent: list[Frame] = []
-        self.node = self.add_node(canopen.BaseNode402(node, str(PATH)))
+        remote = BaseNode402(node, sheet(node))  # type: ignore[no-untyped-call]
+        self.node: Any = self.add_node(remote)
 
     def send_message(self, can_id: int, data: Any, remote: bool = False) -> None:
         self.drive.on_frame(self.t, Frame(can_id, bytes(data), False, remote))
@@ -61,8 +70,7 @@ class Wire(canopen.Network):  # type: ignore[misc]
     def state(self) -> str:
         """Returns the state that the statusword shows, read by SDO."""
         word = self.node.sdo[0x6041].raw
-        masks = canopen.profiles.p402.State402.SW_MASK
-        (name,) = [name for name, (mask, bits) in masks.items() if word & mask == bits]
+        (name,) = [name for name, (mask, bits) in State402.SW_MASK.items() if word & mask == bits]
         return str(name)
 
     def _deliver(self) -> None:
