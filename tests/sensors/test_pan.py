@@ -78,9 +78,9 @@ def test_tracking_follows_the_beacon_it_was_given() -> None:
 def test_tracking_stays_with_the_beacon_it_had_though_another_comes_nearer_to_the_middle() -> None:
     beacons = (BeaconSpec(at=(4.0, 1.0), colour="red"), BeaconSpec(at=(4.0, -1.0), colour="green"))
     bench = Bench({"pan": {"kind": "tracking", "rate": 0.2, "angle": 0.2}}, beacons)
-    for k in range(40):
-        bench.expose(1, Pose(0.0, 0.0, min(0.04 * k, 0.4)))
-    assert bench.pans[-1] == pytest.approx(atan2(1.0, 4.0) - 0.4)
+    for k in range(60):
+        bench.expose(1, Pose(0.0, 0.0, -min(0.04 * k, 0.6)))
+    assert bench.pans[-1] == pytest.approx(atan2(1.0, 4.0) + 0.6)
 
 
 def test_tracking_knows_nothing_while_the_camera_is_blind() -> None:
