@@ -24,7 +24,7 @@ from hilbed.plant.encoder import Encoder
 from hilbed.plant.simulated import Axis, SimulatedPlant
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.plant.supply import Supply
-from hilbed.plant.urdf import diffdrive
+from hilbed.plant.urdf import Body, diffdrive, moved_inertia
 from hilbed.ports import Reference, Sensor, Witness
 from hilbed.robots import ROBOTS
 from hilbed.scenario import files
@@ -49,10 +49,12 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
     effects = Effects([spec.friction] * len(robot.drives))
     schedule = _schedule(scenario, robot.drives, effects)
     sensors = tuple(_sensors(scenario, spec, effects, witness, cost))
-    world = _world(loaded, spec, start, cost)
+    body = _body(loaded)
+    inertia = reflected_inertia(spec.motor, spec.gear)
+    world = BulletWorld(body, spec, start, inertia, cost)
     wire = Wire(scenario.bus.bitrate, witness.transfer)
     port = wire.attach("controller")
-    axes = [_axis(node, spec, wire) for node in nodes]
+    axes = [_axis(node, spec, moved_inertia(body, inertia), wire) for node in nodes]
     plant = SimulatedPlant(axes, world, Supply(spec.supply), schedule, wire, sensors, tick, cost)
     base = CanBase(robot, port, nodes, scenario.bus)
     rig = Rig(
@@ -117,12 +119,11 @@ def _sensors(
         yield Camera(sensor, eye, rng.stream(scenario.seed, f"sensors.{name}"), effects, witness)
 
 
-def _world(loaded: Loaded, spec: SimulatedSpec, start: Pose, cost: Cost) -> BulletWorld:
+def _body(loaded: Loaded) -> Body:
     robot = loaded.scenario.robot
-    body = diffdrive(files.resolve(robot.urdf, loaded.folder), robot.wheel_radius, robot.track)
-    return BulletWorld(body, spec, start, reflected_inertia(spec.motor, spec.gear), cost)
+    return diffdrive(files.resolve(robot.urdf, loaded.folder), robot.wheel_radius, robot.track)
 
 
-def _axis(node: Node, spec: SimulatedSpec, wire: Wire) -> Axis:
-    train = DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick)
+def _axis(node: Node, spec: SimulatedSpec, inertia: float, wire: Wire) -> Axis:
+    train = DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick, inertia)
     return Axis(node.name, node.id, train, Encoder(spec.encoder, spec.tick), wire.attach)
