@@ -20,6 +20,7 @@ ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a str
 # the more pixel columns an edge crosses. An edge that crosses none is off by 1/√12, two of them by 1/√24.
 _ROUNDING = 0.066
 _UPRIGHT = 0.2
+_FINEST = 0.004  # pixels: the beacon's shape is not drawn any better
 
 
 class ColourDetector:
@@ -91,7 +92,8 @@ class ColourDetector:
         half -= taper * depth
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
         steps = np.maximum.reduceat(runs.left, first) - np.minimum.reduceat(runs.left, first)
-        std = pixel * np.where(steps > 0, _ROUNDING / (1 + steps), _UPRIGHT)
+        rounding = np.where(steps > 0, _ROUNDING / (1 + steps), _UPRIGHT)
+        std = pixel * np.maximum(rounding, _FINEST)
         labels = runs.label[first]
         return [
             self._detection(float(azimuth[k]), float(std[k]), int(labels[k]))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from math import atan2, cos, sin
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TypeAlias
 from weakref import finalize
 
 import cv2
@@ -21,6 +22,8 @@ from hilbed.vision import egl
 from hilbed.vision.cone import obj
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import Image
+
+Quiet: TypeAlias = Callable[[], AbstractContextManager[None]]
 
 NEAR, FAR = 0.02, 200.0
 GROUND: Colour = (0.6, 0.6, 0.6)
@@ -60,7 +63,8 @@ class BulletRenderer:
         self._client = pybullet.connect(pybullet.DIRECT)
         if self._client < 0:
             raise ScenarioError("PyBullet has no client left for the camera: too many cameras in one process")
-        self._finalize = finalize(self, _disconnect, self._client, scenery.egl)
+        self._quiet: Quiet = egl.silence if scenery.egl else nullcontext  # EGL prints as it draws
+        self._finalize = finalize(self, _disconnect, self._client, self._quiet)
         if scenery.egl:
             egl.load(self._client)
         self._projection = projection(lens, _EGL_EDGES if scenery.egl else _TINY_EDGES)
@@ -75,11 +79,12 @@ class BulletRenderer:
                 body, (bx, by, 0.0), (0.0, 0.0, sin(half), cos(half)), physicsClientId=client
             )
         view = look(x, y, z, yaw)
-        start = perf_counter()
-        picture = pybullet.getCameraImage(
-            lens.width, lens.height, view, self._projection, **_LIGHT, **_FAST, physicsClientId=client
-        )
-        cost.render += perf_counter() - start
+        with self._quiet():
+            start = perf_counter()
+            picture = pybullet.getCameraImage(
+                lens.width, lens.height, view, self._projection, **_LIGHT, **_FAST, physicsClientId=client
+            )
+            cost.render += perf_counter() - start
         rgba = np.asarray(picture[2], dtype=np.uint8).reshape(lens.height, lens.width, 4)
         return np.asarray(cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB), np.uint8)
 
@@ -108,8 +113,8 @@ class BulletRenderer:
         return int(pybullet.createMultiBody(baseVisualShapeIndex=shape, physicsClientId=self._client))
 
 
-def _disconnect(client: int, loud: bool) -> None:
-    with egl.silence() if loud else nullcontext():
+def _disconnect(client: int, quiet: Quiet) -> None:
+    with quiet():
         pybullet.disconnect(client)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ctypes import CDLL
 from math import pi
 
 import cv2
@@ -68,6 +69,16 @@ def test_both_renderers_lead_to_the_same_detections() -> None:
     assert abs(np.mean(differences)) <= 0.01
     for camera in cameras:
         camera.close()
+
+
+@pytest.mark.usefixtures("working_egl")
+def test_egl_writes_nothing_on_standard_output(capfd: pytest.CaptureFixture[str]) -> None:
+    camera = renderer([beacon(0.0, 2.0)], egl=True)
+    for _ in range(3):
+        camera.render(0.0, 0.0, 0.3, 0.0)
+    camera.close()
+    CDLL(None).fflush(None)
+    assert capfd.readouterr().out == ""
 
 
 @pytest.mark.usefixtures("working_egl")
