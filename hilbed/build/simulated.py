@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from hilbed import rng
 from hilbed.build.bench import BOOT, Bench
@@ -44,7 +45,7 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
     robot = ROBOTS[scenario.robot.kind](scenario.robot)
     reference = None if scenario.reference is None else scenario.reference.build()
     start, period, tick = start_of(scenario, reference), nanos(scenario.period), nanos(spec.tick)
-    nodes = resolve(scenario.nodes, robot.drives)
+    nodes = tuple(_told(node, spec) for node in resolve(scenario.nodes, robot.drives))
 
     effects = Effects([spec.friction] * len(robot.drives))
     schedule = _schedule(scenario, robot.drives, effects)
@@ -98,6 +99,17 @@ def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
 def _known(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings:
     mounts = [sensor.mount[:2] for sensor in scenario.sensors.values()]
     return Surroundings([beacon.at for beacon in spec.beacons], start, mounts[0] if mounts else (0.0, 0.0))
+
+
+def _told(node: Node, spec: SimulatedSpec) -> Node:
+    """Returns a node that is told at boot what it drives, where the scenario does not say otherwise."""
+    plate = {
+        "counts_per_turn": spec.encoder.resolution,
+        "resistance": spec.motor.resistance,
+        "back_emf": spec.motor.back_emf * spec.gear.ratio,
+    }
+    known = {key: value for key, value in plate.items() if key in node.table.settings}
+    return replace(node, settings={**known, **node.settings})
 
 
 def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:
