@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, insort
 from dataclasses import dataclass, field
 
 from hilbed.types import Array, Innovation, Nanos, Reading
@@ -64,6 +64,7 @@ class Timeline:
     def insert(self, measurement: Measurement) -> int:
         """Puts a measurement at its time, cutting an increment in two if need be; returns the node's index.
 
+        Within one moment measurements are in an order of their own, so that the order of arrival is nothing.
         The time must be after `oldest` and not after the last node's.
         """
         index = bisect_left(self.nodes, measurement.t, key=lambda node: node.t)
@@ -71,7 +72,7 @@ class Timeline:
         if node.t != measurement.t:
             node = cut(self.nodes[index - 1], node, measurement.t)
             self.nodes.insert(index, node)
-        node.measurements.append(measurement)
+        insort(node.measurements, measurement, key=_order)
         return index
 
 
@@ -82,3 +83,8 @@ def cut(before: Node, after: Node, t: Nanos) -> Node:
     after.distance -= middle.distance
     after.turn -= middle.turn
     return middle
+
+
+def _order(measurement: Measurement) -> tuple[str, int, float]:
+    reading = measurement.reading
+    return reading.kind, -1 if reading.beacon is None else reading.beacon, measurement.value

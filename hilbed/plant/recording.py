@@ -24,8 +24,10 @@ import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from hilbed.types import Array, ScenarioError
 
@@ -66,17 +68,24 @@ def _read(path: Path) -> tuple[dict[str, Array], list[str]]:
     """Returns every array that is made of numbers, and what cannot be read."""
     arrays, problems = {}, []
     try:
-        with np.load(path, allow_pickle=False) as file:
-            if not isinstance(file, np.lib.npyio.NpzFile):
-                return {}, ["is a single array; a recording is an .npz file with named arrays"]
+        file = np.load(path, allow_pickle=False)
+        if not isinstance(file, np.lib.npyio.NpzFile):
+            return {}, ["is a single array; a recording is an .npz file with named arrays"]
+        with file:
             for key in file.files:
                 try:
-                    arrays[key] = np.asarray(file[key], dtype=np.float64)
+                    arrays[key] = _numbers(file[key])
                 except UNREADABLE as error:
                     problems.append(f"{key} is not an array of numbers ({error})")
     except UNREADABLE as error:
         return {}, [f"cannot be read as .npz ({error})"]
     return arrays, problems
+
+
+def _numbers(array: npt.NDArray[Any]) -> Array:
+    if array.dtype.kind not in "biuf":
+        raise ValueError(f"its type is {array.dtype}")
+    return array.astype(np.float64)
 
 
 def _problems(arrays: Mapping[str, Array]) -> list[str]:
