@@ -29,6 +29,7 @@ Point = tuple[float, float]
 Signals = Mapping[str, Any]
 
 WINDOW = 2.0  # s: over it odometry is compared with truth
+SHORTEST = 5.0  # s: in less there is nothing to be learnt
 RATIOS = tuple(
     2 ** (k / 2) for k in range(-2, 5)
 )  # of readings' doubt to odometry's, over that of white noise
@@ -121,6 +122,8 @@ def fit_signals(signals: Signals, beacons: Sequence[Point]) -> Fitted:
 
 
 def _sightings(signals: Signals, beacons: Sequence[Point]) -> dict[str, Sightings]:
+    if signals["t"][-1] - signals["t"][0] < SHORTEST:
+        raise ScenarioError(f"fit: less than {SHORTEST:g} s of the run are left to fit to")
     places = np.array(beacons, dtype=float).reshape(-1, 2)
     if not np.isfinite(signals["truth"]).all(axis=1).any():
         raise ScenarioError("fit: the run has no truth to fit to")
@@ -158,7 +161,8 @@ def _reading(sensor: SensorFit, kind: str, factor: float) -> ReadingSpec:
 
 
 def _short(value: float) -> float:
-    return float(f"{value:.3g}")
+    """Returns three digits, none below a micrometre or a microradian."""
+    return round(float(f"{value:.3g}"), 6) + 0.0  # no −0.0
 
 
 def trial(spec: EkfSpec, signals: Signals, beacons: Sequence[Point]) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from hilbed.estimation.motion import OdometryModel
 from hilbed.types import Array
 
 LEAST = 1e-3  # m/√m, rad/√m, rad/√rad: no odometer is better, and a filter must not believe so
+SHARPEST = 1e-5  # rad or m: the same for a sensor
 LATEST = 0.3  # s: delays are looked for within ± this
 
 
@@ -150,6 +151,6 @@ def _scatter(kind: str, error: Array, distance: Array) -> tuple[float, float]:
 
     squared = np.minimum(np.square(error), 9 * np.median(np.square(error)) / 0.4549)
     if kind == "range":
-        return float(np.sqrt(squared.mean())), 0.0
+        return max(float(np.sqrt(squared.mean())), SHARPEST), 0.0
     base, near = nnls(np.column_stack((np.ones_like(distance), distance**-2.0)), squared)[0]
-    return max(float(np.sqrt(base)), LEAST), float(np.sqrt(near))
+    return max(float(np.sqrt(base)), SHARPEST), float(np.sqrt(near))

@@ -116,6 +116,7 @@ def test_increments_undo_integration() -> None:
     ("spoil", "words"),
     [
         (lambda table: table["truth"].fill(np.nan), "no truth"),
+        (lambda table: table.update(first_part(table, 0.2)), "less than 5 s"),
         (lambda table: [table.pop(key) for key in list(table) if "/" in key], "fewer than 20"),
         (lambda table: table["azimuth/beacon"].fill(-1) or table["range/beacon"].fill(-1), "fewer than 20"),
     ],
