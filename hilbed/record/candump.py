@@ -14,22 +14,19 @@ class CandumpLog:
     """A sink that writes `(seconds.microseconds) channel ID#DATA`, stamped with a frame's last bit.
 
     Boot happens before t = 0 and the format knows no negative time, so the log's time is t + `offset`;
-    whole seconds keep it readable. On disk once a second of simulated time, whole lines only.
+    whole seconds keep it readable. Every batch goes to the disk, in whole lines only.
     """
 
     def __init__(self, path: Path, offset: Nanos = 0, channel: str = "hilbed") -> None:
         self._file = GrowingFile(path)
         self._offset = offset
         self._channel = channel
-        self._flushed: Nanos = -offset
 
     def take(self, batch: Batch) -> None:
         offset, channel = self._offset, self._channel
         if batch.transfers:
             lines = [line(transfer, offset, channel) for transfer in batch.transfers]
             self._file.write("".join(lines).encode())
-        if batch.row is not None and batch.row.cycle.t >= self._flushed + SECOND:
-            self._flushed = batch.row.cycle.t
             self._file.flush()
             self._file.check()
 

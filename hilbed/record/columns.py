@@ -10,10 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from hilbed.clock import MILLISECOND
-from hilbed.record.row import Batch, Row, Witnessed
+from hilbed.record.row import WIDTH, Batch, Row, Witnessed
 from hilbed.types import Array, Innovation, Nanos, Reading, Transfer
 
-_WIDTH = 24  # numbers a row: t, four poses, covariance, command
 _UNKNOWN = (nan, nan, nan)
 _NS = 1e-9
 
@@ -47,19 +46,16 @@ class Columns:
         if batch.transfers:
             self._note_transfers(batch.transfers)
         self._waiting += batch.readings
-        if batch.row is not None:
-            self._note_row(batch.row)
+        for row in batch.rows:
+            self._note_row(row)
 
     def close(self) -> None:
         """Has nothing to close."""
 
     def _note_row(self, row: Row) -> None:
-        (t, truth, odometry, _, estimate, command), reckoned, reference = row
-        extend = self._rows.extend
-        extend((t * _NS, *truth.pose, *reckoned, *reference, *command))
-        extend(estimate.mean.tolist()[:3])
-        for line in estimate.covariance.tolist()[:3]:
-            extend(line[:3])
+        t, _, odometry, _, estimate, _ = row.cycle
+        self._rows.append(t * _NS)
+        self._rows.extend(row.numbers)
         for drive in self._drives:
             self._drive_rows.extend(odometry.drives.get(drive, _UNKNOWN))
         for innovation in estimate.innovations:
@@ -82,7 +78,7 @@ class Columns:
         ticks: the plant's log, "tick/t" (M,) and "tick/drive/NAME/…" (M,), row k at time k·`tick` (ns).
         A reading that was not delivered by the last row makes no row.
         """
-        signals = _poses(np.array(self._rows).reshape(-1, _WIDTH))
+        signals = _poses(np.array(self._rows).reshape(-1, 1 + WIDTH))
         t = signals["t"]
         signals |= self._measured(len(t))
         signals |= _plant(t, ticks or {}, tick * _NS)

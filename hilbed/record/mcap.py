@@ -45,8 +45,8 @@ class Setting(NamedTuple):
 class McapLog:
     """A sink that writes every signal, frame and image; log time is t + `offset` (ns), never negative.
 
-    On disk once a second of simulated time, in whole chunks: a run that is killed loses less than that.
-    The same run gives the same bytes.
+    Every batch goes to the disk as a whole chunk: a run that is killed loses the last one at most. The same
+    run gives the same bytes.
     """
 
     def __init__(self, path: Path, offset: Nanos = 0, setting: Setting | None = None) -> None:
@@ -54,7 +54,6 @@ class McapLog:
         self._file = GrowingFile(path)
         self._channels = Channels(self._file)
         self._cycles = CycleLog(self._channels, offset)
-        self._flushed: Nanos = -offset
         self._tick_names: list[str] = []
         self._open(setting or Setting())
 
@@ -78,31 +77,27 @@ class McapLog:
             self._note_reading(witnessed)
         for snapshot in batch.snapshots:
             self._note_snapshot(snapshot)
-        if batch.ticks:
-            self._note_ticks(batch.ticks)
-        if batch.row is not None:
-            self._note_row(batch.row)
+        for ticks in batch.ticks:
+            self._note_ticks(ticks)
+        for row in batch.rows:
+            self._note_row(row)
+        self._cycles.log(batch.rows)
+        self._channels.flush()
+        self._file.check()
 
     def close(self) -> None:
         """Writes the index; raises RecordError if the disk was full, what was written stays readable."""
-        self._cycles.flush()
         self._channels.close()
         self._file.close()
 
     def _note_row(self, row: Row) -> None:
         t = row.cycle.t
-        self._cycles.note(row)
         for innovation in row.cycle.estimate.innovations:
             self._note_innovation(innovation)
         while self._events and self._events[0][0] <= t:
             at, message = self._events.pop(0)
             at += self._offset
             self._log_event(self._scenery.event(at, message), log_time=at)
-        if t >= self._flushed + SECOND:
-            self._flushed = t
-            self._cycles.flush()
-            self._channels.flush()
-            self._file.check()
 
     def _note_innovation(self, innovation: Innovation) -> None:
         t, nis, dof, accepted = innovation

@@ -21,31 +21,45 @@ class Witnessed(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A control period, where dead reckoning puts the robot and where the reference wants it."""
+    """A control period and its numbers, worked out once for all sinks.
+
+    numbers: truth, odometry by dead reckoning, reference (3 each), command (2), estimate (3), covariance (9).
+    """
 
     cycle: Cycle
-    odometry: Pose
-    reference: Pose
+    numbers: list[float]
+
+
+WIDTH = 23  # numbers a row
+
+
+def row_of(cycle: Cycle, odometry: Pose, reference: Pose) -> Row:
+    """Returns the row of a cycle with the poses that only the recorder works out."""
+    estimate = cycle.estimate
+    numbers = [*cycle.truth.pose, *odometry, *reference, *cycle.command, *estimate.mean.tolist()[:3]]
+    for line in estimate.covariance.tolist()[:3]:
+        numbers += line[:3]
+    return Row(cycle, numbers)
 
 
 class Batch(NamedTuple):
-    """All that has happened since the previous batch; the lists belong to the journal and are reused.
+    """All that has happened since the previous batch; the lists are emptied once the sinks have taken it.
 
-    ticks: new rows of the plant's log by name, "tick/t" (n,) and "tick/drive/NAME/…" (n,).
+    ticks: new rows of the plant's log, each by name: "tick/t" (n,) and "tick/drive/NAME/…" (n,).
     """
 
-    row: Row | None
+    rows: Sequence[Row]
     transfers: Sequence[Transfer]
     readings: Sequence[Witnessed]
     snapshots: Sequence[Snapshot]
-    ticks: Mapping[str, Array]
+    ticks: Sequence[Mapping[str, Array]]
 
 
 class Sink(Protocol):
     """Where batches go: signals, a log file, a hash."""
 
     def take(self, batch: Batch) -> None:
-        """Records a batch; raises RecordError if it cannot be written."""
+        """Records a batch, to the disk if anywhere; raises RecordError if it cannot be written."""
         ...
 
     def close(self) -> None: ...

@@ -95,6 +95,7 @@ def test_readings_are_in_order_of_delivery_and_only_delivered_ones_make_rows() -
     notes.reading(Reading("azimuth", 0, 9 * PERIOD, (0.9,), (0.1,)), 1, (0.9,))
     for k in range(5):
         journal.record(cycle(k, innovations=(Innovation(0, 2.0, 2, False),)))
+    journal.close()
     signals = columns.finish()
     assert signals["azimuth/measured"] == pytest.approx([0.1, 0.3])
     assert signals["azimuth/beacon"].tolist() == [-1, 2]

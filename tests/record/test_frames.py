@@ -17,7 +17,7 @@ from tests.record.runs import image
 
 def seen(frames: Frames, count: int) -> None:
     shots = [Snapshot(k * 100_000_000, image(k), 0.0, (1.5,), (None,)) for k in range(count)]
-    frames.take(Batch(None, (), (), shots, {}))
+    frames.take(Batch((), (), (), shots, ()))
 
 
 @given(st.integers(1, 300))

@@ -52,7 +52,7 @@ def test_order_of_names_and_bits_of_nan_do_not_count_but_shape_and_name_do() -> 
 
 def digest_of(*transfers: Transfer) -> bytes:
     digest = BusDigest()
-    digest.take(Batch(None, transfers, (), (), {}))
+    digest.take(Batch((), transfers, (), (), ()))
     return digest.digest()
 
 
@@ -81,5 +81,5 @@ def test_splitting_a_run_into_batches_does_not_count() -> None:
     one, two = Transfer(0, 1, 2, Frame(1), "a"), Transfer(3, 4, 5, Frame(2), "b")
     digest = BusDigest()
     for transfer in (one, two):
-        digest.take(Batch(None, [transfer], (), (), {}))
+        digest.take(Batch((), [transfer], (), (), ()))
     assert digest.digest() == digest_of(one, two)

@@ -7,49 +7,66 @@ from hilbed.ports import Recorder, Witness
 from hilbed.record.disk import RecordError
 from hilbed.record.journal import Journal
 from hilbed.record.notes import Notes
-from hilbed.record.row import Batch
+from hilbed.record.row import Batch, Sink
 from hilbed.types import Pose
 from tests.record.runs import cycle, transfer
 
 
 class Counting:
     def __init__(self, fail_at: int | None = None) -> None:
-        self.rows = self.frames = self.closed = 0
+        self.rows = self.frames = self.taken = self.closed = 0
         self.fail_at = fail_at
 
     def take(self, batch: Batch) -> None:
-        self.rows += batch.row is not None
+        self.taken += 1
+        self.rows += len(batch.rows)
         self.frames += len(batch.transfers)
-        if self.rows == self.fail_at:
+        if self.taken == self.fail_at:
             raise RecordError("disk full")
 
     def close(self) -> None:
         self.closed += 1
 
 
-def test_what_witnesses_note_reaches_the_sinks_with_the_cycle_and_is_paid_for() -> None:
-    cost, sink = Cost(), Counting()
-    notes = Notes()
-    journal = Journal(notes, [sink], cost, Pose(0.0, 0.0, 0.0))
+def journal_of(notes: Notes, *sinks: Sink, cost: Cost | None = None) -> Journal:
+    return Journal(notes, sinks, cost or Cost(), Pose(0.0, 0.0, 0.0))
+
+
+def test_cycles_and_notes_reach_the_sinks_twice_a_second_and_at_the_end() -> None:
+    cost, notes, sink = Cost(), Notes(), Counting()
+    journal = journal_of(notes, sink, cost=cost)
     recorder: Recorder = journal
     witness: Witness = notes
-    witness.transfer(transfer(0, 1))
-    recorder.record(cycle(0))
-    witness.transfer(transfer(1, 1))
-    assert (sink.rows, sink.frames) == (1, 1)
+    seen = []
+    for k in range(120):
+        witness.transfer(transfer(k, 1))
+        recorder.record(cycle(k))
+        seen.append((sink.rows, sink.frames))
+    assert seen[49] == (0, 0)
+    assert seen[50] == (51, 51)
+    assert seen[119] == (102, 102)
     assert cost.record > 0
     journal.close()
-    assert (sink.rows, sink.frames, sink.closed) == (1, 2, 1)
+    assert (sink.rows, sink.frames, sink.closed) == (120, 120, 1)
 
 
 def test_a_log_that_breaks_is_closed_and_the_others_go_on() -> None:
     good, bad = Counting(), Counting(fail_at=2)
-    notes = Notes()
-    journal = Journal(notes, [bad, good], Cost(), Pose(0.0, 0.0, 0.0))
+    journal = journal_of(Notes(), bad, good)
+    for k in range(101):
+        journal.record(cycle(k))
+    with pytest.raises(RecordError, match="disk full"):
+        journal.record(cycle(101))
+    journal.record(cycle(102))
+    journal.close()
+    assert (bad.rows, bad.closed) == (102, 1)
+    assert (good.rows, good.closed) == (103, 1)
+
+
+def test_a_log_that_breaks_at_the_end_is_told_when_all_are_closed() -> None:
+    good, bad = Counting(), Counting(fail_at=1)
+    journal = journal_of(Notes(), bad, good)
     journal.record(cycle(0))
     with pytest.raises(RecordError, match="disk full"):
-        journal.record(cycle(1))
-    journal.record(cycle(2))
-    journal.close()
-    assert (bad.rows, bad.closed) == (2, 1)
-    assert (good.rows, good.closed) == (3, 1)
+        journal.close()
+    assert (good.rows, good.closed, bad.closed) == (1, 1, 1)
