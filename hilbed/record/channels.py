@@ -20,12 +20,13 @@ class Channels:
 
     def __init__(self, file: GrowingFile) -> None:
         import foxglove
-        from foxglove.mcap import MCAPWriteOptions
+        from foxglove.mcap import MCAPCompression, MCAPWriteOptions
 
         self._context = foxglove.Context()
         self._logs: dict[str, Callable[..., None]] = {}
         self._channels: list[Any] = []
         options = MCAPWriteOptions(
+            compression=MCAPCompression.Lz4,  # a quarter larger than with zstd, for a third of its time
             chunk_size=1 << 22,  # a chunk ends where we flush it
             disable_seeking=True,  # so that a chunk reaches the file in one piece
             compression_threads=0,  # threads would win nothing and cost the other runs of a sweep

@@ -5,10 +5,10 @@ from __future__ import annotations
 from html import escape
 from pathlib import Path
 
+from hilbed.criteria import Missing
+from hilbed.record.folder import REPORT, write_whole
 from hilbed.report import page
-from hilbed.report.run import Run, read_run
-
-REPORT = "report.html"
+from hilbed.report.run import ReportError, Run, read_run
 
 
 def write_report(folder: Path) -> Path:
@@ -16,10 +16,12 @@ def write_report(folder: Path) -> Path:
 
     Parts that the run lacks are left out. Raises HilbedError where the folder is not a run's, or is full.
     """
-    from hilbed.record.folder import write_whole
-
     run = read_run(folder)
-    write_whole(folder / REPORT, _page(run).encode())
+    try:
+        text = _page(run)
+    except (Missing, ArithmeticError, LookupError, TypeError, ValueError) as error:
+        raise ReportError(f"{folder} holds a run that cannot be shown: {error!r}") from error
+    write_whole(folder / REPORT, text.encode())
     return folder / REPORT
 
 
@@ -30,26 +32,25 @@ def _page(run: Run) -> str:
 
 
 def _summary(run: Run) -> str:
-    return page.card("Criteria", page.criteria(run)) + page.card("Cost", page.cost(run), "s of wall time")
+    return page.card("Criteria", page.criteria(run)) + page.card("Cost", page.cost(run))
 
 
 def _figures(run: Run) -> str:
     from hilbed.report import bus_figures, drive_figures, pose_figures, sensor_figures, style
 
-    in_colour = "in the beacon's colour"
     with style.drawing():
         cards = [
             page.card("Path", pose_figures.path(run)),
             page.card("Error of the estimate", pose_figures.errors(run)),
-            page.card("Distance to truth", pose_figures.tracking(run)),
             page.card("Wheel speeds", drive_figures.speeds(run)),
             page.card("Duties, currents, loads", drive_figures.efforts(run)),
-            page.card("Slip", drive_figures.slip(run), "surface of the wheel against the ground"),
-            page.card("Azimuth residuals", sensor_figures.residuals(run, "azimuth"), in_colour),
-            page.card("Range residuals", sensor_figures.residuals(run, "range"), in_colour),
+            page.card("Distance to truth", pose_figures.tracking(run)),
+            page.card("Slip: surface of the wheel against the ground", drive_figures.slip(run)),
+            page.card("Azimuth residuals, by beacon", sensor_figures.residuals(run, "azimuth")),
+            page.card("Range residuals, by beacon", sensor_figures.residuals(run, "range")),
             page.card("Innovations", sensor_figures.nis(run)),
-            page.card("Bus load", bus_figures.bus_load(run), "part of each 0.1 s with a frame on the bus"),
-            page.card("Bus latency", bus_figures.latency(run)),
+            page.card("Bus load in each 0.1 s", bus_figures.bus_load(run)),
+            page.card("Bus latency by identifier", bus_figures.latency(run)),
         ]
     return "".join(cards)
 

@@ -20,7 +20,7 @@ def bus_load(run: Run) -> str | None:
         t, part = load(run.signals)
     except Missing:
         return None
-    figure, axes = style.sheet(1, 2.3)
+    figure, axes = style.sheet(1, 2.4)
     axes[0].fill_between(t, 100 * part, step="post", color=style.STAND_IN["estimate"], alpha=0.2, linewidth=0)
     axes[0].step(t, 100 * part, where="post", color=style.STAND_IN["estimate"], linewidth=0.9)
     axes[0].set_ylim(0.0, 1.25 * float(100 * part.max()) or 1.0)
@@ -38,7 +38,7 @@ def latency(run: Run) -> str | None:
     found, counts = np.unique(identifiers, return_counts=True)
     found = np.sort(found[np.argsort(-counts)[:_MOST]])[::-1]
     rows = np.array([_marks(values[identifiers == one]) for one in found])
-    figure, (axes,) = style.sheet(1, 0.9 + 0.21 * len(found))
+    figure, (axes,) = style.sheet(1, max(2.4, 0.9 + 0.21 * len(found)))
     places = np.arange(len(found))
     axes.hlines(places, rows[:, 0], rows[:, 2], color=style.STAND_IN["line"], linewidth=4)
     marks = (("median", "estimate"), ("99 %", "odometry"), ("longest", "bad"))
@@ -48,7 +48,7 @@ def latency(run: Run) -> str | None:
     axes.grid(axis="y", visible=False)
     axes.set_xlim(left=0.0)
     axes.set_xlabel("queued to last bit  [ms]")
-    style.legend(axes)
+    style.legend(axes, 2.0)
     return style.svg(figure, "latency of frames by identifier")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from hilbed.report import style
 from hilbed.report.run import Run
 
@@ -11,7 +13,7 @@ def speeds(run: Run) -> str | None:
     names = [name for name in run.signals.drives() if _has(run, name, "speed_ref")]
     if not names:
         return None
-    figure, axes = style.sheet(len(names), 1.2 + 1.5 * len(names))
+    figure, axes = style.sheet(len(names), 1.2 + 1.6 * len(names))
     for one, name, colour in zip(axes, names, style.DRIVES, strict=False):
         measured = "speed" if _has(run, name, "speed") else "speed_measured"
         t, reference = _column(run, name, "speed_ref")
@@ -19,13 +21,13 @@ def speeds(run: Run) -> str | None:
         t, speed = _column(run, name, measured)
         one.plot(t, speed, color=style.STAND_IN[colour], linewidth=0.9, label=name)
         one.set_ylabel("speed  [rad/s]")
-        style.legend(one)
+        style.legend(one, 12.0 if one is axes[0] else 1.0)
     style.on_time(axes, run.signals["t"], run.spans)
     return style.svg(figure, "wheel speeds and references")
 
 
 def efforts(run: Run) -> str | None:
-    """Returns duties, currents and load torques of all drives; None where the run has none of them."""
+    """Returns duties, currents and load torques of all drives; None where all are absent or zero."""
     return _stacked(
         run,
         (("duty", "duty", 100.0, "%"), ("current", "current", 1.0, "A"), ("load_torque", "load", 1.0, "N m")),
@@ -34,16 +36,16 @@ def efforts(run: Run) -> str | None:
 
 
 def slip(run: Run) -> str | None:
-    """Returns the slip of all wheels; None where the plant has none."""
+    """Returns the slip of all wheels; None where it is absent or zero."""
     return _stacked(run, (("slip", "slip", 100.0, "cm/s"),), "slip of the wheels")
 
 
 def _stacked(run: Run, fields: tuple[tuple[str, str, float, str], ...], label: str) -> str | None:
     drives = run.signals.drives()
-    rows = [field for field in fields if any(_has(run, name, field[0]) for name in drives)]
+    rows = [field for field in fields if any(_moves(run, name, field[0]) for name in drives)]
     if not rows:
         return None
-    figure, axes = style.sheet(len(rows), 1.0 + 1.25 * len(rows))
+    figure, axes = style.sheet(len(rows), 1.3 + 1.03 * len(rows))
     for one, (field, word, scale, unit) in zip(axes, rows, strict=True):
         for name, colour in zip(drives, style.DRIVES, strict=False):
             if _has(run, name, field):
@@ -57,6 +59,10 @@ def _stacked(run: Run, fields: tuple[tuple[str, str, float, str], ...], label: s
 
 def _has(run: Run, drive: str, field: str) -> bool:
     return f"drive/{drive}/{field}" in run.signals or f"tick/drive/{drive}/{field}" in run.signals
+
+
+def _moves(run: Run, drive: str, field: str) -> bool:
+    return _has(run, drive, field) and bool(np.nan_to_num(run.signals.drive(drive, field)).any())
 
 
 def _column(run: Run, drive: str, field: str) -> tuple[style.Column, ...]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Mapping
 from html import escape
+from math import inf
 from typing import Any
 
 from hilbed.criteria import METRICS
 from hilbed.record.folder import CAN, MCAP, SIGNALS, VERDICT
-from hilbed.report.run import Run, Shot
+from hilbed.report.run import Run, Shot, Span
 from hilbed.report.style import COLOURS, Theme
 
 _PARTS = ("#6b8afd", "#42b3a4", "#e2a03f", "#d9698a", "#9a7bd8", "#5fa8d3", "#8fb04e", "#9aa5b4", "#c3c9d2")
@@ -37,8 +38,8 @@ def banner(run: Run) -> str:
     tiles = "".join(f"<div><dt>{a}</dt><dd>{b}<small> {c}</small></dd></div>" for a, b, c in facts)
     return (
         f'<header class="{kind}"><div><h1>{escape(str(verdict["scenario"]))}'
-        f"<small> seed {escape(str(verdict['seed']))}</small></h1>{reason}</div>"
-        f'<span class="pill">{word}</span><dl>{tiles}</dl></header>\n'
+        f"<small> seed {escape(str(verdict['seed']))}</small>"
+        f'<span class="pill">{word}</span></h1>{reason}</div><dl>{tiles}</dl></header>\n'
     )
 
 
@@ -73,10 +74,16 @@ def disturbances(run: Run) -> str:
     if not run.spans:
         return ""
     chips = "".join(
-        f"<li><b>{span.letter}</b> {escape(span.about)} <small>{span.start:g}–{span.end:g} s</small></li>"
+        f"<li><b>{span.letter}</b> {escape(span.about)} <small>{_when(span)}</small></li>"
         for span in run.spans
     )
     return f'<ul class="chips">{chips}</ul>\n'
+
+
+def _when(span: Span) -> str:
+    if span.end < inf:
+        return f"{span.start:g}–{span.end:g} s"
+    return f"from {span.start:g} s on" if span.start > 0 else "all the time"
 
 
 def shots(run: Run) -> str | None:

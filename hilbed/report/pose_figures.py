@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, TypeGuard
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
@@ -11,8 +11,11 @@ from hilbed.criteria.pose import wrapped
 from hilbed.report import style
 from hilbed.report.run import Run
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 _STYLES: dict[str, dict[str, Any]] = {
-    "reference": {"linewidth": 3.2, "alpha": 0.55, "solid_capstyle": "round"},
+    "reference": {"linewidth": 5.0, "alpha": 0.6, "solid_capstyle": "round"},
     "odometry": {"linewidth": 1.0, "linestyle": (0, (4, 2))},
     "truth": {"linewidth": 1.5},
     "estimate": {"linewidth": 1.0},
@@ -30,20 +33,29 @@ def path(run: Run) -> str | None:
         step = max(1, len(pose) // 4000)
         colour = style.STAND_IN[name]
         axes.plot(pose[::step, 0], pose[::step, 1], color=colour, label=name, **_STYLES[name])
-    for k, beacon in enumerate(run.beacons):
-        colour, edge = style.beacon_colour(beacon.colour), style.STAND_IN["muted"]
-        axes.plot(beacon.x, beacon.y, "o", markersize=7, color=colour, markeredgecolor=edge)
-        axes.annotate(
-            str(k), (beacon.x, beacon.y), (6, 4), textcoords="offset points", color=style.STAND_IN["muted"]
-        )
+    _draw_scene(axes, run)
     start = next(iter(pose[0] for name, pose in shown.items() if name in ("truth", "estimate")), None)
     if start is not None:
         axes.plot(start[0], start[1], "s", markersize=5, color=style.STAND_IN["good"], label="start")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x  [m]")
     axes.set_ylabel("y  [m]")
-    style.legend(axes)
+    style.legend(axes, 2.0)
     return style.svg(figure, "path of the robot")
+
+
+def _draw_scene(axes: Axes, run: Run) -> None:
+    """Draws the beacons with their numbers and the areas of disturbances with their letters."""
+    muted, shade = style.STAND_IN["muted"], style.STAND_IN["shade"]
+    for k, beacon in enumerate(run.beacons):
+        colour = style.beacon_colour(beacon.colour)
+        axes.plot(beacon.x, beacon.y, "o", markersize=7, color=colour, markeredgecolor=muted)
+        axes.annotate(str(k), (beacon.x, beacon.y), (6, 4), textcoords="offset points", color=muted)
+    for span in run.spans:
+        if span.area:
+            x0, y0, x1, y1 = span.area
+            axes.fill([x0, x1, x1, x0], [y0, y0, y1, y1], color=shade, alpha=0.3, linewidth=0)
+            axes.text((x0 + x1) / 2, (y0 + y1) / 2, span.letter, color=shade, fontweight="bold", ha="center")
 
 
 def errors(run: Run) -> str | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 from zipfile import BadZipFile
@@ -22,12 +23,16 @@ class ReportError(HilbedError):
 
 
 class Span(NamedTuple):
-    """A disturbance on the time axis: a letter for the plots, what it is, from and to (s)."""
+    """A disturbance: a letter for the figures, what it is, from and to (s; inf for good).
+
+    area: x, y of two opposite corners (m) where it is a place, else empty.
+    """
 
     letter: str
     about: str
     start: float
     end: float
+    area: tuple[float, ...] = ()
 
 
 class Beacon(NamedTuple):
@@ -65,7 +70,7 @@ def read_run(folder: Path) -> Run:
         raise ReportError(f"{folder} is not a folder")
     text = _read(folder / SCENARIO).decode(errors="replace")
     scenario = _parsed(folder / SCENARIO, lambda: yaml.safe_load(text))
-    verdict = _parsed(folder / VERDICT, lambda: json.loads(_read(folder / VERDICT)))
+    verdict = _parsed(folder / VERDICT, lambda: _verdict(folder / VERDICT))
     signals = _parsed(folder / SIGNALS, lambda: _signals(folder / SIGNALS))
     shots = _parsed(folder / FRAMES, lambda: _shots(folder / FRAMES))
     spans = _parsed(folder / SCENARIO, lambda: _spans(scenario))
@@ -85,6 +90,24 @@ def _parsed(path: Path, parse: Any) -> Any:
         return parse()
     except (ValueError, KeyError, TypeError, AttributeError, yaml.YAMLError, BadZipFile, EOFError) as error:
         raise ReportError(f"{path} is not what a run writes: {error}") from error
+
+
+def _verdict(path: Path) -> dict[str, Any]:
+    verdict: dict[str, Any] = json.loads(_read(path))
+    for key in (
+        "scenario",
+        "seed",
+        "passed",
+        "reason",
+        "criteria",
+        "metrics",
+        "sim_time",
+        "wall_time",
+        "cost",
+    ):
+        if key not in verdict:
+            raise ValueError(f"it has no {key}")
+    return verdict
 
 
 def _signals(path: Path) -> Signals:
@@ -107,14 +130,16 @@ def _shots(folder: Path) -> tuple[Shot, ...]:
 
 
 def _spans(scenario: Mapping[str, Any]) -> tuple[Span, ...]:
-    spans = []
-    for k, block in enumerate(scenario.get("disturbances") or []):
-        words = [str(block["kind"]).replace("_", " "), *([str(block["drive"])] if "drive" in block else [])]
-        start = float(block.get("start", 0.0))
-        spans.append(
-            Span(chr(65 + k % 26), " · ".join(words), start, start + float(block.get("length", 0.0)))
-        )
-    return tuple(spans)
+    blocks = scenario.get("disturbances") or []
+    return tuple(_span(chr(65 + k % 26), block) for k, block in enumerate(blocks))
+
+
+def _span(letter: str, block: Mapping[str, Any]) -> Span:
+    words = [str(block["kind"]).replace("_", " "), *([str(block["drive"])] if block.get("drive") else [])]
+    start, length = float(block.get("start") or 0.0), block.get("length")
+    corners = (block.get("corner"), block.get("opposite"))
+    area = tuple(float(part) for corner in corners for part in corner or ()) if all(corners) else ()
+    return Span(letter, " · ".join(words), start, inf if length is None else start + float(length), area)
 
 
 def _beacons(scenario: Mapping[str, Any]) -> tuple[Beacon, ...]:

@@ -9,6 +9,7 @@ from hilbed.report import style
 from hilbed.report.run import Run
 
 _KINDS = {"azimuth": (180_000 / np.pi, "mdeg"), "range": (100.0, "cm")}
+_LEAST = 1e-2  # NIS below it is drawn there
 _MOST = 2500  # points of a scatter: more are neither seen nor loaded quickly
 
 
@@ -49,10 +50,12 @@ def nis(run: Run) -> str | None:
         return None
     from scipy.stats import chi2
 
-    t, value = run.signals["nis/t"], np.maximum(run.signals["nis/value"], 1e-3)
+    t, value = run.signals["nis/t"], np.maximum(run.signals["nis/value"], _LEAST)
     accepted, dof = run.signals["nis/accepted"].astype(bool), run.signals["nis/dof"]
     figure, (axes,) = style.sheet(1, 2.6)
     for name, chosen, colour in (("accepted", accepted, "estimate"), ("rejected", ~accepted, "bad")):
+        if not chosen.any():
+            continue
         kept = np.flatnonzero(chosen)[:: max(1, int(chosen.sum()) // _MOST)]
         axes.scatter(
             t[kept], value[kept], s=5, linewidths=0, alpha=0.75, color=style.STAND_IN[colour],
