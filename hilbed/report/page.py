@@ -83,7 +83,8 @@ def disturbances(run: Run) -> str:
 def _when(span: Span) -> str:
     if span.end < inf:
         return f"{span.start:g}–{span.end:g} s"
-    return f"from {span.start:g} s on" if span.start > 0 else "all the time"
+    always = "in its area" if span.area else "all the time"
+    return f"from {span.start:g} s on" if span.start > 0 else always
 
 
 def shots(run: Run) -> str | None:

@@ -55,7 +55,8 @@ def _draw_scene(axes: Axes, run: Run) -> None:
         if span.area:
             x0, y0, x1, y1 = span.area
             axes.fill([x0, x1, x1, x0], [y0, y0, y1, y1], color=shade, alpha=0.3, linewidth=0)
-            axes.text((x0 + x1) / 2, (y0 + y1) / 2, span.letter, color=shade, fontweight="bold", ha="center")
+            corner = (max(x0, x1), max(y0, y1))
+            axes.annotate(span.letter, corner, (2, 1), textcoords="offset points", color=shade, weight="bold")
 
 
 def errors(run: Run) -> str | None:

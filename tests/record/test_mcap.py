@@ -25,6 +25,10 @@ class Bump:
     kind, start, length = "load_torque", 1.0, 0.5
 
 
+class ForGood:
+    kind, start, length = "wheel_radius", 2.0, None
+
+
 SETTING = Setting(
     beacons=[BeaconSpec(at=(1.0, 2.0), colour="blue")],
     path=[(0.0, 0.0), (3.0, 0.0)],
@@ -120,6 +124,7 @@ def test_events_are_in_order_of_time() -> None:
         (1_000_000_000, "load_torque begins"),
         (1_500_000_000, "load_torque ends"),
     ]
+    assert events([ForGood()]) == [(2_000_000_000, "wheel_radius begins")]
 
 
 def test_a_full_disk_ends_the_run_with_a_word(capfd: pytest.CaptureFixture[str]) -> None:
