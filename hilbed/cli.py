@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,6 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Runs the command that the arguments name and exits with its status."""
     from hilbed.console import quiet_pipe
 
+    # Matrices here are 3 × 3: threads only cost. To be said before numpy is imported.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     options = _parser().parse_args(arguments)
     status = 0
     with quiet_pipe():
@@ -90,7 +93,7 @@ def _add_scenario(parser: _Parser) -> None:
     parser.add_argument("scenario", metavar="SCENARIO", help="a bundled scenario or a YAML file")
     parser.add_argument(
         "--set", action="append", default=[], dest="settings", metavar="PATH=VALUE",
-        help="lay one value over the scenario, such as controller.kind=open_loop",
+        help="lay one value over the scenario, such as controller=open_loop",
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from hilbed.types import Array, Command, Diverged, Estimate, Nanos, Pose
 Row = tuple[float, float, float]
 
 SLOWEST = 0.05  # m/s: an axle that stands cannot be steered aside, so gains are those of this speed
-GRID = 0.01  # m/s and rad/s: reference speeds are rounded to it before a gain is solved and kept
+GRID = 0.05  # m/s and rad/s: reference speeds are rounded to it before a gain is solved and kept
 
 
 class LqrSpec(Spec):
@@ -77,6 +77,7 @@ class Lqr:
         self._R = np.diag(np.power(spec.effort, -2.0))
         self._limits = spec.max_speed, spec.max_turn_rate
         self._gains: dict[tuple[int, int], tuple[Row, Row]] = {}
+        self._gain(*reference.at(0)[1:])  # brings scipy in before the first cycle
 
     def step(self, t: Nanos, estimate: Estimate) -> Command:
         """Returns the command for the period from `t`; raises Diverged if the estimate is not finite."""

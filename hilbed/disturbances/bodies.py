@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Literal
 
 import numpy as np
 
-from hilbed.disturbances.schedule import Disturbance, DisturbanceBase, drawn
+from hilbed.clock import nanos
+from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase, drawn
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import Finite, NonNegative, Point, Positive
 from hilbed.types import Nanos
+
+FASTEST = 10.0
+"""m/s; no wheel gets to the edge of a patch sooner than at this speed."""
 
 SMALLEST_WHEEL = 0.1
 """Factor below which a drawn wheel radius is not taken: a wheel stays a wheel."""
@@ -46,10 +51,14 @@ def slip_patch(spec: SlipPatch, _: int, __: np.random.Generator) -> Disturbance:
     """Returns the disturbance that changes friction under every wheel inside the rectangle."""
     (x0, x1), (y0, y1) = (sorted(pair) for pair in zip(spec.corner, spec.opposite, strict=True))
 
-    def apply(_: Nanos, surroundings: Surroundings, effects: Effects) -> None:
+    def apply(_: Nanos, surroundings: Surroundings, effects: Effects) -> Nanos:
+        nearest = inf
         for wheel, (x, y) in enumerate(surroundings.wheels):
-            if x0 <= x <= x1 and y0 <= y <= y1:
+            right, above = max(x0 - x, x - x1), max(y0 - y, y - y1)  # negative inside
+            if right <= 0 and above <= 0:
                 effects.friction[wheel] = spec.friction
+            nearest = min(nearest, abs(max(right, above)))
+        return nanos(nearest / FASTEST)
 
     return apply
 
@@ -58,8 +67,9 @@ def wheel_radius(spec: WheelRadius, wheel: int, rng: np.random.Generator) -> Dis
     """Returns the disturbance that scales the rolling radius of the wheel with that index."""
     size = max(drawn(spec.size, spec.spread, rng), SMALLEST_WHEEL)
 
-    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:
         effects.radius[wheel] *= size
+        return STEADY
 
     return apply
 
@@ -67,8 +77,9 @@ def wheel_radius(spec: WheelRadius, wheel: int, rng: np.random.Generator) -> Dis
 def push(spec: Push, _: int, __: np.random.Generator) -> Disturbance:
     """Returns the disturbance that pushes and turns the body."""
 
-    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:
         x, y, turn = effects.push
         effects.push = (x + spec.size[0], y + spec.size[1], turn + spec.torque)
+        return STEADY
 
     return apply

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import model_validator
 
 from hilbed.clock import seconds
-from hilbed.disturbances.schedule import Disturbance, DisturbanceBase, drawn
+from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase, drawn
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import Finite, NonNegative, Positive
 from hilbed.types import Nanos
@@ -51,9 +51,10 @@ def load_torque(spec: LoadTorque, wheel: int, rng: np.random.Generator) -> Distu
     """Returns the disturbance that loads the wheel with that index."""
     size = drawn(spec.size, spec.spread, rng)
 
-    def apply(since: Nanos, _: Surroundings, effects: Effects) -> None:
+    def apply(since: Nanos, _: Surroundings, effects: Effects) -> Nanos:
         part = min(1.0, seconds(since) / spec.rise) if spec.shape == "ramp" else 1.0
         effects.load_torque[wheel] += part * size
+        return STEADY if part == 1.0 else 0
 
     return apply
 
@@ -62,7 +63,8 @@ def supply_sag(spec: SupplySag, _: int, rng: np.random.Generator) -> Disturbance
     """Returns the disturbance that lowers the supply."""
     size = drawn(spec.size, spec.spread, rng)
 
-    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:
         effects.supply_drop += size
+        return STEADY
 
     return apply

@@ -12,10 +12,12 @@ from hilbed.effects import Effects, Surroundings
 from hilbed.spec import NonNegative, Positive, Spec
 from hilbed.types import Nanos
 
-Disturbance: TypeAlias = Callable[[Nanos, Surroundings, Effects], None]
-"""Writes into the effects what it does at a time since its own start."""
+Disturbance: TypeAlias = Callable[[Nanos, Surroundings, Effects], Nanos]
+"""Writes what it does at a time since its own start; returns for how long (ns) that stays the same."""
 
 NEVER: Nanos = 2**62
+STEADY: Nanos = NEVER
+"""Holds as long as the disturbance is active."""
 
 
 class DisturbanceBase(Spec):
@@ -40,17 +42,20 @@ class Schedule:
         self.effects = effects
         self._entries = [(nanos(spec.start), _end(spec), disturbance) for spec, disturbance in entries]
         self._active: list[tuple[Nanos, Disturbance]] = []
-        self._edge: Nanos = 0
+        self._edge: Nanos = 0  # when the next one starts or ends
+        self._again: Nanos = 0  # when one of them has to be asked again
 
     def apply(self, t: Nanos, surroundings: Surroundings) -> None:
         """Brings the effects to their state for the tick that starts at `t`."""
+        if t < self._again:
+            return
         if t >= self._edge:
             self._switch(t)
-        elif not self._active:
-            return
         self.effects.reset()
+        self._again = self._edge
         for start, disturbance in self._active:
-            disturbance(t - start, surroundings, self.effects)
+            held = disturbance(t - start, surroundings, self.effects)
+            self._again = min(self._again, t + held)
 
     def _switch(self, t: Nanos) -> None:
         self._active = [(start, act) for start, end, act in self._entries if start <= t < end]

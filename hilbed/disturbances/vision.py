@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
+from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import NonNegative
 from hilbed.types import Nanos
@@ -28,8 +28,9 @@ class CameraLoss(DisturbanceBase):
 def spurious_azimuths(spec: SpuriousAzimuths, _: int, __: np.random.Generator) -> Disturbance:
     """Returns the disturbance that adds false azimuths to the frames."""
 
-    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:
         effects.spurious += spec.size
+        return STEADY
 
     return apply
 
@@ -37,7 +38,8 @@ def spurious_azimuths(spec: SpuriousAzimuths, _: int, __: np.random.Generator) -
 def camera_loss(_: CameraLoss, __: int, ___: np.random.Generator) -> Disturbance:
     """Returns the disturbance that blinds the camera."""
 
-    def apply(_: Nanos, __: Surroundings, effects: Effects) -> None:
+    def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:
         effects.blind = True
+        return STEADY
 
     return apply

@@ -15,6 +15,8 @@ from hilbed.types import Diverged, Pose, ScenarioError
 
 # Cosine of 25°: no robot on wheels comes back from there.
 UPRIGHT = 0.906
+# rad/s and m/s; beyond it a motor's numbers mean nothing. A NaN is not below it either.
+FASTEST = 1e5
 NO_PUSH = (0.0, 0.0, 0.0)
 
 
@@ -22,8 +24,8 @@ class BulletWorld:
     """Steps one robot; lists are in the order of its drives, left then right.
 
     After a step: `angles` (rad), `speeds` (rad/s) of the wheels as their encoders turn, forward positive;
-    `slips` (m/s), surface speed of the wheel less ground speed at the contact, forward positive; `pose`, of
-    the axle's midpoint; `height` (m) of base_link over the ground; `upright`, cosine of the tilt.
+    `slips` (m/s), surface speed of the wheel less ground speed at the contact, forward positive. `pose` and
+    `height` are worked out when somebody asks.
 
     A wheel's radius factor f makes it roll as one of radius f R, and may change at any time. Bullet keeps its
     sphere of radius R; between it and the drive stands a lossless gear, ω = ω_bullet / f and
@@ -50,14 +52,16 @@ class BulletWorld:
             )
         self._centre = self._centre_of_mass()
         self._friction = [0.0] * len(self._joints)
-        self._drag = [0.0] * len(self._joints)
+        self._factors: list[float] = []
+        self._coulomb: list[float] = []
         self._set_friction([spec.friction] * len(self._joints))
         self._ticks = 0
+        self._tick = spec.tick
         self._turned = [0.0] * len(self._joints)
         self.angles = [0.0] * len(self._joints)
-        self.speeds: list[float] = []
-        self.slips: list[float] = []
-        self._refresh([1.0] * len(self._joints))
+        self.speeds = [0.0] * len(self._joints)
+        self.slips = [0.0] * len(self._joints)
+        self._locate()
 
     def _centre_of_mass(self) -> tuple[float, float, float]:
         """Returns base_link's centre of mass in its frame; PyBullet's base pose is that of this point."""
@@ -78,9 +82,9 @@ class BulletWorld:
         factors = effects.radius
         if effects.friction != self._friction:
             self._set_friction(effects.friction)
-        drag = [friction / factor for friction, factor in zip(coulomb, factors, strict=True)]
-        if drag != self._drag:
-            self._set_drag(drag)
+        if factors != self._factors or coulomb != self._coulomb:
+            self._factors, self._coulomb = list(factors), list(coulomb)
+            self._set_drag([friction / factor for friction, factor in zip(coulomb, factors, strict=True)])
         if effects.push != NO_PUSH:
             self._push(*effects.push)
         p.setJointMotorControlArray(
@@ -97,7 +101,7 @@ class BulletWorld:
         p.stepSimulation(physicsClientId=self._client)
         self._cost.physics += perf_counter() - begun
         self._ticks += 1
-        self._refresh(factors)
+        self._read(factors)
 
     def _set_friction(self, friction: Sequence[float]) -> None:
         for wheel, old, new in zip(self._joints, self._friction, friction, strict=True):
@@ -105,12 +109,11 @@ class BulletWorld:
                 p.changeDynamics(self._robot, wheel, lateralFriction=new, physicsClientId=self._client)
         self._friction = list(friction)
 
-    def _set_drag(self, drag: list[float]) -> None:
+    def _set_drag(self, drag: Sequence[float]) -> None:
         """A motor that holds zero speed with no more than the dry friction: exact, and it stays set."""
         p.setJointMotorControlArray(
             self._robot, self._joints, p.VELOCITY_CONTROL, forces=drag, physicsClientId=self._client
         )
-        self._drag = drag
 
     def _push(self, x: float, y: float, torque: float) -> None:
         centre, _ = p.getBasePositionAndOrientation(self._robot, physicsClientId=self._client)
@@ -121,32 +124,64 @@ class BulletWorld:
             self._robot, -1, [0.0, 0.0, torque], p.WORLD_FRAME, physicsClientId=self._client
         )
 
-    def _refresh(self, factors: Sequence[float]) -> None:
-        """Reads the state back: base_link's origin from its centre of mass, by the whole quaternion."""
-        (x, y, z), (qx, qy, qz, qw) = p.getBasePositionAndOrientation(
-            self._robot, physicsClientId=self._client
-        )
+    def _read(self, factors: Sequence[float]) -> None:
+        """Reads wheels and velocity back; where the body is, is worked out only when somebody asks.
+
+        Bullet turns the body by its new rate over the tick, so yaw follows from the last known one without
+        error, as long as the robot stands level.
+        """
         (vx, vy, _), (_, _, turning) = p.getBaseVelocity(self._robot, physicsClientId=self._client)
         states = p.getJointStates(self._robot, self._joints, physicsClientId=self._client)
-        cx, cy, cz = self._centre
-        forward_x = 1.0 - 2.0 * (qy * qy + qz * qz)
-        forward_y = 2.0 * (qx * qy + qw * qz)
-        self.upright = upright = 1.0 - 2.0 * (qx * qx + qy * qy)
-        x -= forward_x * cx + 2.0 * (qx * qy - qw * qz) * cy + 2.0 * (qx * qz + qw * qy) * cz
-        y -= forward_y * cx + (1.0 - 2.0 * (qx * qx + qz * qz)) * cy + 2.0 * (qy * qz - qw * qx) * cz
-        self.height = z - (2.0 * (qx * qz - qw * qy) * cx + 2.0 * (qy * qz + qw * qx) * cy + upright * cz)
-        self.pose = Pose(x, y, wrap(atan2(forward_y, forward_x)))
+        self._known = False
+        self._yaw = yaw = self._yaw + turning * self._tick
         # Forward speed of the axle's midpoint, and half the difference between its wheels.
-        speed = vx * forward_x + vy * forward_y + turning * cy
+        speed = vx * cos(yaw) + vy * sin(yaw) + turning * self._centre[1]
         swing = turning * self._half_track
         (left, left_speed, _, _), (right, right_speed, _, _) = states
         left_factor, right_factor = factors
-        turned, self._turned = self._turned, [left, right]
-        angles = self.angles
+        turned, angles, speeds, slips = self._turned, self.angles, self.speeds, self.slips
         angles[0] += (left - turned[0]) / left_factor
         angles[1] += (right - turned[1]) / right_factor
-        self.speeds = [left_speed / left_factor, right_speed / right_factor]
-        self.slips = [left_speed * self._radius - speed + swing, right_speed * self._radius - speed - swing]
+        turned[0], turned[1] = left, right
+        speeds[0], speeds[1] = left_speed / left_factor, right_speed / right_factor
+        slips[0] = left_speed * self._radius - speed + swing
+        slips[1] = right_speed * self._radius - speed - swing
+
+        if not -FASTEST < left_speed + right_speed + speed < FASTEST:
+            t = f"t = {self._ticks * self._tick:.3f} s"
+            raise Diverged(
+                f"{t}: speeds run away (wheels {left_speed}, {right_speed} rad/s, body {speed} m/s)"
+            )
+
+    @property
+    def height(self) -> float:
+        """Of base_link over the ground, m."""
+        if not self._known:
+            self._locate()
+        return float(self._height)
+
+    @property
+    def pose(self) -> Pose:
+        """Of the axle's midpoint; raises Diverged where the robot cannot go on from there."""
+        if not self._known:
+            self._locate()
+        return self._pose
+
+    def _locate(self) -> None:
+        """Finds base_link's origin from its centre of mass, by the whole quaternion."""
+        (x, y, z), (qx, qy, qz, qw) = p.getBasePositionAndOrientation(
+            self._robot, physicsClientId=self._client
+        )
+        cx, cy, cz = self._centre
+        forward_x = 1.0 - 2.0 * (qy * qy + qz * qz)
+        forward_y = 2.0 * (qx * qy + qw * qz)
+        self._upright = upright = 1.0 - 2.0 * (qx * qx + qy * qy)
+        x -= forward_x * cx + 2.0 * (qx * qy - qw * qz) * cy + 2.0 * (qx * qz + qw * qy) * cz
+        y -= forward_y * cx + (1.0 - 2.0 * (qx * qx + qz * qz)) * cy + 2.0 * (qy * qz - qw * qx) * cz
+        self._height = z - (2.0 * (qx * qz - qw * qy) * cx + 2.0 * (qy * qz + qw * qx) * cy + upright * cz)
+        self._yaw = yaw = wrap(atan2(forward_y, forward_x))
+        self._pose = Pose(x, y, yaw)
+        self._known = True
         bound = self._spec.arena
         # Written so that a NaN fails it.
         if not (upright > UPRIGHT and -bound < x < bound and -bound < y < bound):
@@ -154,12 +189,12 @@ class BulletWorld:
 
     def _diverge(self) -> None:
         t = f"t = {self._ticks * self._spec.tick:.3f} s"
-        x, y, yaw = self.pose
-        if not isfinite(x + y + yaw + self.upright):
+        x, y, yaw = self._pose
+        if not isfinite(x + y + yaw + self._upright):
             raise Diverged(f"{t}: the robot's pose is not finite (x = {x}, y = {y}, yaw = {yaw})")
         where = f"at x = {x:.2f}, y = {y:.2f} m"
-        if self.upright <= UPRIGHT:
-            raise Diverged(f"{t}: the robot fell over {where} (tilt {degrees(acos(self.upright)):.0f}°)")
+        if self._upright <= UPRIGHT:
+            raise Diverged(f"{t}: the robot fell over {where} (tilt {degrees(acos(self._upright)):.0f}°)")
         raise Diverged(f"{t}: the robot left the arena of ±{self._spec.arena:g} m {where}")
 
     @property

@@ -124,6 +124,7 @@ class SimulatedPlant:
         self._tick = tick
         self._cost = cost
         self._now: Nanos = 0
+        self._drawn = 0.0  # A out of the supply, over the last tick
         self._log = array("d")
         self._coulomb = [axis.train.coulomb for axis in self._axes]
 
@@ -143,7 +144,7 @@ class SimulatedPlant:
     def start(self) -> None:
         """Takes the state at t = 0 into the log and the sensors' first samples."""
         self._schedule.apply(0, self._world)
-        self._note([0.0] * len(self._axes), [0] * len(self._axes))
+        self._note([0.0] * len(self._axes), [0.0] * len(self._axes))
         self._sample(0)
 
     def advance(self, start: Nanos, end: Nanos) -> None:
@@ -154,20 +155,23 @@ class SimulatedPlant:
             self._sample(self._now)
 
     def _step(self, t: Nanos) -> None:
-        cost, world, effects = self._cost, self._world, self._schedule.effects
+        cost, world, schedule = self._cost, self._world, self._schedule
+        effects = schedule.effects
         begun = perf_counter()
-        self._schedule.apply(t, world)
-        drawn = sum([axis.train.supply_current for axis in self._axes])
-        volts = self._supply.voltage(drawn, effects.supply_drop)
+        schedule.apply(t, world)
+        volts = self._supply.voltage(self._drawn, effects.supply_drop)
         volts_pin = pins.supply(volts)
-        torques, duties = [], []
+        torques, duties, drawn = [], [], 0.0
         for axis, angle, speed in zip(self._axes, world.angles, world.speeds, strict=True):
             firmware, train = axis.firmware, axis.train
-            duty = firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
+            q15 = firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
             if firmware.outbox:
                 axis.flush(t)
-            torques.append(train.step(pins.duty(duty), firmware.bridge_enabled, volts, speed))
+            duty = pins.duty(q15)
+            torques.append(train.step(duty, firmware.bridge_enabled, volts, speed))
             duties.append(duty)
+            drawn += train.supply_current
+        self._drawn = drawn
         driven = perf_counter()
         cost.drives += driven - begun
         self._wire.advance(t + self._tick)
@@ -175,20 +179,12 @@ class SimulatedPlant:
         world.step(torques, self._coulomb, effects)
         self._note(torques, duties)
 
-    def _note(self, torques: Sequence[float], duties: Sequence[int]) -> None:
-        world, loads = self._world, self._schedule.effects.load_torque
-        for k, axis in enumerate(self._axes):
-            self._log.extend(
-                (
-                    world.speeds[k],
-                    axis.train.current,
-                    world.slips[k],
-                    loads[k],
-                    torques[k],
-                    axis.firmware.speed_ref,
-                    pins.duty(duties[k]),
-                )
-            )
+    def _note(self, torques: Sequence[float], duties: Sequence[float]) -> None:
+        world, loads, extend = self._world, self._schedule.effects.load_torque, self._log.extend
+        for axis, speed, slip, load, torque, duty in zip(
+            self._axes, world.speeds, world.slips, loads, torques, duties, strict=True
+        ):
+            extend((speed, axis.train.current, slip, load, torque, axis.firmware.speed_ref, duty))
 
     def _sample(self, t: Nanos) -> None:
         for sensor in self._sensors:
@@ -199,7 +195,8 @@ class SimulatedPlant:
         """Returns the tick log from row `first` on: "tick/t" and "tick/drive/NAME/…", each (M,)."""
         width = len(SIGNALS) * len(self._axes)
         rows = np.array(self._log[first * width :]).reshape(-1, width)
-        columns: dict[str, Array] = {"tick/t": (first + np.arange(len(rows))) * (self._tick * 1e-9)}
+        stamps = np.arange(first, first + len(rows), dtype=np.float64) * (self._tick * 1e-9)
+        columns: dict[str, Array] = {"tick/t": stamps}
         for k, axis in enumerate(self._axes):
             for j, signal in enumerate(SIGNALS):
                 columns[f"tick/drive/{axis.name}/{signal}"] = rows[:, k * len(SIGNALS) + j].copy()

@@ -9,7 +9,7 @@ from typing import Any
 
 from hilbed.can.load import periodic_load
 from hilbed.can.specs import BusSpec, NodeSpec, resolve
-from hilbed.clock import nanos, seconds
+from hilbed.clock import nanos
 from hilbed.control import ControllerSpec, ReferenceSpec
 from hilbed.criteria import METRICS, CriterionSpec, metric_of
 from hilbed.disturbances import DisturbanceSpec
@@ -133,7 +133,7 @@ def _recorded(
 
 
 def _disturbed(
-    disturbances: list[DisturbanceSpec], robot: RobotSpec, sensors: Mapping[str, SensorSpec], duration: float
+    disturbances: list[DisturbanceSpec], robot: RobotSpec, sensors: Mapping[str, SensorSpec]
 ) -> Problems:
     drives = ROBOTS[robot.kind].drives
     for k, disturbance in enumerate(disturbances):
@@ -142,24 +142,18 @@ def _disturbed(
         if drive is not None and drive not in drives:
             text = f"{place}.drive: the robot has no drive {drive!r}{nearest(drive, drives)}"
             yield Problem(("disturbances", k, "drive"), text)
-        if disturbance.start >= duration:
-            text = f"{place}.start: {disturbance.start:g} s is after the end of the run, {duration:g} s"
-            yield Problem(("disturbances", k, "start"), text)
         if disturbance.kind in ("camera_loss", "spurious_azimuths") and not sensors:
             yield Problem(
                 ("disturbances", k), f"{place}: {disturbance.kind} needs a camera among the sensors"
             )
 
 
-def _judged(criteria: Mapping[str, CriterionSpec], duration: float, period: float) -> Problems:
+def _judged(criteria: Mapping[str, CriterionSpec]) -> Problems:
     for name, criterion in criteria.items():
         metric = metric_of(name, criterion)
         if metric not in METRICS:
             text = f"criteria.{name}: unknown metric {metric!r}{nearest(metric, list(METRICS))}"
             yield Problem(("criteria", name), text)
-        if criterion.start > duration - seconds(nanos(period)):
-            text = f"criteria.{name}.from: {criterion.start:g} s leaves nothing of a run of {duration:g} s"
-            yield Problem(("criteria", name, "from"), text)
 
 
 CHECKS: tuple[Callable[..., Problems], ...] = (

@@ -13,15 +13,18 @@ from weakref import finalize
 
 import cv2
 import numpy as np
-import pybullet
 
 from hilbed.cost import Cost, perf_counter
+from hilbed.quiet import muted
 from hilbed.scene import COLOURS, BeaconSpec, Colour
 from hilbed.types import ScenarioError
 from hilbed.vision import egl
 from hilbed.vision.cone import obj
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import Image
+
+with muted():
+    import pybullet
 
 Quiet: TypeAlias = Callable[[], AbstractContextManager[None]]
 

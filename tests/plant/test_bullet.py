@@ -50,6 +50,7 @@ def make() -> Iterator[Make]:
 def run(robot: BulletWorld, torque: float, knobs: Effects, ticks: int = 2000) -> None:
     for _ in range(ticks):
         robot.step((torque, torque), NONE, knobs)
+        assert robot.pose  # whether it can go on is found when somebody looks where it is
 
 
 def servo(robot: BulletWorld, speeds: tuple[float, float], ticks: int, knobs: Effects) -> tuple[float, float]:
