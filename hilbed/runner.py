@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hilbed import loop, verdict
+from hilbed import collector, loop, verdict
 from hilbed.build import BOOT, Bench, build
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
@@ -130,7 +130,8 @@ def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: 
     ending.attempt(bench.boot)
     if ending.status == PASSED:
         start = perf_counter()
-        ending.attempt(lambda: _cycles(bench, journal, duration, watch, ending))
+        with collector.paused():
+            ending.attempt(lambda: _cycles(bench, journal, duration, watch, ending))
         ending.wall = perf_counter() - start
     ending.attempt(lambda: bench.stop(ending.last))
     ending.attempt(journal.close)
