@@ -28,13 +28,15 @@ def run(options: argparse.Namespace) -> int:
     folder = RunFolder(options.out or _default_folder(loaded), options.force)
     with stop_on_signal() as stop:
         outcome = perform(loaded, folder, _watch(loaded, stop))
+    if outcome.trace:
+        print(f"{outcome.trace}This is a mistake in hilbed, not in the scenario.", file=sys.stderr)
     report = _report(folder.path, loaded)
     _tell(outcome, folder.path, report, options.json)
     return outcome.status
 
 
 def _default_folder(loaded: Loaded) -> Path:
-    return Path("runs") / f"{loaded.name.replace('/', '-')}-{loaded.scenario.seed}"
+    return Path("runs") / f"{loaded.name}-{loaded.scenario.seed}"
 
 
 def _watch(loaded: Loaded, stop: Stop) -> Watch:

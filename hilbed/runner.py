@@ -140,7 +140,7 @@ def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: 
 def _cycles(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: _Ending) -> None:
     logged = 0
     for cycle in loop.run(bench.rig, duration):
-        if cycle.t % SECOND == 0:
+        if cycle.t % SECOND == 0 or cycle.t == duration:
             rows = bench.ticks(logged)
             logged += len(rows.get("tick/t", ()))
             journal.ticks(rows)

@@ -97,8 +97,9 @@ def read(text: str, name: str) -> tuple[dict[str, Any], Marks]:
     if len(text) > LARGEST:
         raise ScenarioError(f"{name}: {len(text)} characters, a scenario has at most {LARGEST}")
     try:
-        root = yaml.compose(text, _Loader)
-        data = yaml.load(text, _Loader)
+        loader = _Loader(text)
+        root = loader.get_single_node()
+        data = None if root is None else loader.construct_document(root)
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise ScenarioError(f"{name}:{line}: {error.problem or 'not YAML'}") from None
@@ -139,4 +140,4 @@ _Dumper.yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
 
 def write(data: dict[str, Any]) -> str:
     """Writes a mapping so that `read` gives it back."""
-    return str(yaml.dump(data, Dumper=_Dumper, sort_keys=False, width=110))
+    return str(yaml.dump(data, Dumper=_Dumper, sort_keys=False, default_flow_style=None, width=110))
