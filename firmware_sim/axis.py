@@ -14,6 +14,8 @@ from firmware_sim.settings import read_loop, read_motor, read_settings
 from firmware_sim.speedmeter import Speedmeter
 
 _CONTROL, _MODE, _DISPLAY, _TARGET = key(0x6040), key(0x6060), key(0x6061), key(0x60FF)
+# Bound here: to look up a member of an enumeration takes longer than a multiplication.
+_ENABLED: Final = State.ENABLED
 _POWERED = (State.ENABLED, State.QUICK_STOP, State.REACTION)
 _STOP_TICKS: Final = 1000  # a wheel that something keeps turning is let go after a second at zero reference
 _LOW_TICKS: Final = 5  # a supply may sag for so long
@@ -24,7 +26,8 @@ FULL_DUTY: Final = 32767
 class Axis:
     """One motor. `speed_ref` (rad/s, in the encoder's direction) is what the loop follows now.
 
-    event: state, mode or error code have changed since the owner looked (and put it back).
+    event: state, mode or error code have changed since the owner looked (and put it back);
+    limited: the target is beyond the highest speed.
     """
 
     def __init__(self, values: dict[int, Any], errors: Errors) -> None:
@@ -34,7 +37,7 @@ class Axis:
         self.bridge_enabled = False
         self.speed_ref = 0.0
         self.event = False
-        self.clipped = self.halted = False
+        self.clipped = self.halted = self.limited = False
         self.counts = self.current = self.supply = 0
         self.stop: Stop | None = None
         self._word = self._low = self._stopped = 0
@@ -64,8 +67,9 @@ class Axis:
         else:
             self._low = 0
         ref = self.speed_ref
-        if ref != self.plan.target:
-            ref = self.speed_ref = approach(ref, *self.plan)
+        target, rise, fall = self.plan
+        if ref != target:
+            ref = self.speed_ref = approach(ref, target, rise, fall)
         low, high = self._window(speed, supply * _QUARTER)
         duty = self._step(ref, speed, low, high)
         self.clipped = not low < duty < high
@@ -113,16 +117,17 @@ class Axis:
 
     def _command(self) -> None:
         word = self.values[_CONTROL]
-        command = cia402.decode(self._word, word)
-        self._word = word
-        self.halted = bool(word & cia402.HALT)
-        if command is not None:
-            self._obey(command)
+        if word != self._word or self.state is not _ENABLED or self.stop is not None:
+            command = cia402.decode(self._word, word)
+            self._word = word
+            self.halted = bool(word & cia402.HALT)
+            if command is not None:
+                self._obey(command)
         self._replan()
 
     def _obey(self, command: Command) -> None:
         state = self.state
-        if state is State.ENABLED and command is Command.ENABLE:
+        if state is _ENABLED and command is Command.ENABLE:
             self.stop = None  # on second thoughts
         target = TRANSITIONS.get((state, command))
         if target is None:
@@ -206,15 +211,19 @@ class Axis:
         if mode != values[_DISPLAY]:
             values[_DISPLAY] = mode
             self.event = True
-        most = settings.max_speed
-        self.speed_ref = max(-most, min(most, self.speed_ref))
-        target = values[_TARGET] * settings.unit * settings.direction
-        self.plan = self._planned(max(-most, min(most, target)))
+        most, ref = settings.max_speed, self.speed_ref
+        if not -most <= ref <= most:
+            self.speed_ref = most if ref > 0.0 else -most
+        target = values[_TARGET] * settings.unit
+        self.limited = not -most <= target <= most
+        if self.limited:
+            target = most if target > 0.0 else -most
+        self.plan = self._planned(target)
 
     def _planned(self, target: float) -> Plan:
         if self.stop is not None:
             return stopping(self.settings, self.stop.ramp)
-        if self.state is not State.ENABLED:
+        if self.state is not _ENABLED:
             return stopping(self.settings, Ramp.QUICK)
         if self.halted:
             return stopping(self.settings, Ramp(self.values[key(0x605D)]))

@@ -21,9 +21,10 @@ class Drive:
         if not 1 <= node <= 127:
             raise ValueError(f"a node's number is 1 to 127, not {node}")
         dictionary = ObjectDictionary(node)
-        self._errors = Errors(dictionary.values)
-        self._axis = Axis(dictionary.values, self._errors)
-        self._node = Node(node, dictionary, self._errors, self._axis)
+        errors = Errors(dictionary.values)
+        self._axis = Axis(dictionary.values, errors)
+        self._node = Node(node, dictionary, errors, self._axis)
+        self._pending = errors.pending
         self.outbox: list[Frame] = self._node.outbox
 
     def on_frame(self, t: int, frame: AnyFrame) -> None:
@@ -40,7 +41,7 @@ class Drive:
         if t >= node.due:
             node.poll(t)
         duty = axis.tick(counts, current, supply)
-        if axis.event or self._errors.pending:
+        if axis.event or self._pending:
             axis.event = False
             node.announce(t)
         return duty

@@ -17,10 +17,11 @@ def smoothing(time_constant: float) -> float:
 class ErrorRate:
     """de/dt behind a low-pass; on a jump of the reference only the speed is differentiated."""
 
-    __slots__ = ("_gain", "_ref", "_speed", "value")
+    __slots__ = ("_gain", "_leak", "_ref", "_speed", "value")
 
     def __init__(self, time_constant: float) -> None:
         self._gain = smoothing(time_constant) / TICK
+        self._leak = self._gain * TICK
         self.reset(0.0, 0.0)
 
     def reset(self, ref: float, speed: float) -> None:
@@ -36,5 +37,6 @@ class ErrorRate:
             change += jump
         self._ref = ref
         self._speed = speed
-        self.value += self._gain * change - self._gain * TICK * self.value
-        return self.value
+        value = self.value
+        self.value = value = value + (self._gain * change - self._leak * value)
+        return value

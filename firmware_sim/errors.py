@@ -34,7 +34,10 @@ _BITS: dict[ErrorCode, int] = {
 
 
 class Errors:
-    """What is wrong now (`active`, oldest first); `pending` holds EMCY contents still to be sent."""
+    """What is wrong now (`active`, oldest first); `pending` holds EMCY contents still to be sent.
+
+    `pending` stays the same list, so that others may keep it.
+    """
 
     __slots__ = ("_values", "active", "pending")
 

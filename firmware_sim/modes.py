@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TypeAlias
 
 from firmware_sim.cia402 import Ramp
 from firmware_sim.objects.profile import CYCLIC_VELOCITY, NO_MODE, PROFILE_VELOCITY
 from firmware_sim.settings import Settings
 
+Plan: TypeAlias = tuple[float, float, float]
+"""Where the speed reference goes (rad/s) and how fast (rad/s a tick, growing and shrinking).
 
-class Plan(NamedTuple):
-    """Where the speed reference goes (rad/s) and how fast (rad/s a tick, growing and shrinking)."""
-
-    target: float
-    rise: float
-    fall: float
+A plain tuple: it is taken apart in every tick.
+"""
 
 
 def stopping(settings: Settings, ramp: Ramp) -> Plan:
     """Returns the plan that ends at rest."""
     fall = settings.falls[ramp]
-    return Plan(0.0, fall, fall)
+    return 0.0, fall, fall
 
 
 def _none(settings: Settings, _target: float) -> Plan:
@@ -29,11 +27,11 @@ def _none(settings: Settings, _target: float) -> Plan:
 
 
 def _profile_velocity(settings: Settings, target: float) -> Plan:
-    return Plan(target, settings.rise, settings.falls[Ramp.SLOW])
+    return target, settings.rise, settings.falls[Ramp.SLOW]
 
 
 def _cyclic_velocity(settings: Settings, target: float) -> Plan:
-    return Plan(target, settings.slew, settings.slew)
+    return target, settings.slew, settings.slew
 
 
 MODES: dict[int, Callable[[Settings, float], Plan]] = {

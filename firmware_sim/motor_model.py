@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
 
-
-class MotorModel(NamedTuple):
+class MotorModel:
     """resistance Ω, emf V s (back-EMF at the wheel: K_e times gear ratio), limit A."""
 
-    resistance: float
-    emf: float
-    limit: float
+    __slots__ = ("_drop", "emf", "limit", "resistance")
+
+    def __init__(self, resistance: float, emf: float, limit: float) -> None:
+        self.resistance = resistance
+        self.emf = emf
+        self.limit = limit
+        self._drop = resistance * limit  # V
 
     def window(self, speed: float, voltage: float) -> tuple[float, float]:
         """Returns the lowest and highest duty that keep |i| ≤ limit at this speed, within [−1, 1].
@@ -21,7 +23,7 @@ class MotorModel(NamedTuple):
         if voltage < 1.0:
             voltage = 1.0
         middle = self.emf * speed / voltage
-        half = self.resistance * self.limit / voltage
+        half = self._drop / voltage
         low = middle - half
         high = middle + half
         low = -1.0 if low < -1.0 else 1.0 if low > 1.0 else low

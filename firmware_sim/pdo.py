@@ -15,6 +15,9 @@ from firmware_sim.watchdog import MILLISECOND, NEVER
 
 Values = dict[int, Any]
 
+# A frame past the __new__ of its class, which takes half of the time that a PDO would cost otherwise.
+_new = tuple.__new__
+
 SYNCHRONOUS: Final = 240  # transmission types up to this one act at a SYNC
 # A change of one of these is an event that sends an asynchronous PDO; measured values are not.
 _EVENTS = frozenset((key(0x1001), key(0x603F), key(0x6041), key(0x6061), key(0x60FD)))
@@ -35,9 +38,22 @@ def _getter(keys: tuple[int, ...]) -> Callable[[Values], tuple[Any, ...]]:
 
 
 class Rpdo:
-    """A received PDO: waits for SYNC, or acts at once, by its transmission type."""
+    """A received PDO: waits for SYNC, or acts at once, by its transmission type.
 
-    __slots__ = ("_checked", "_layout", "_values", "cob", "controls", "keys", "pending", "synchronous")
+    size: bytes that a frame must have at least.
+    """
+
+    __slots__ = (
+        "_checked",
+        "_unpack",
+        "_values",
+        "cob",
+        "controls",
+        "keys",
+        "pending",
+        "size",
+        "synchronous",
+    )
 
     def __init__(self, values: Values, number: int) -> None:
         cob = values[key(RX_PARAMETERS + number, 1)]
@@ -46,22 +62,21 @@ class Rpdo:
         self.synchronous = values[key(RX_PARAMETERS + number, 2)] <= SYNCHRONOUS
         self.pending: bytes | None = None
         self._values = values
-        self._layout = _layout(self.keys)
+        layout = _layout(self.keys)
+        self._unpack = layout.unpack_from
+        self.size = layout.size
         self._checked = tuple((i, ENTRIES[k].choices) for i, k in enumerate(self.keys) if ENTRIES[k].choices)
         self.controls = key(0x6040) in self.keys
 
-    @property
-    def size(self) -> int:
-        """Bytes that a frame must have at least."""
-        return self._layout.size
-
     def apply(self, data: bytes) -> bool:
         """Stores the mapped values and says so; a PDO with a value that its object refuses is dropped."""
-        fields = self._layout.unpack_from(data)
+        fields = self._unpack(data)
         for i, choices in self._checked:
             if fields[i] not in choices:
                 return False
-        self._values.update(zip(self.keys, fields, strict=True))
+        values = self._values
+        for k, value in zip(self.keys, fields):  # noqa: B905  (equally long by construction)
+            values[k] = value
         return True
 
 
@@ -133,7 +148,7 @@ class Tpdo:
         return self.sample()
 
     def sample(self) -> Frame:
-        return Frame(self.cob or 0, self._pack(*self._get(self._values)))
+        return _new(Frame, (self.cob or 0, self._pack(*self._get(self._values)), False, False))
 
     def event(self, t: int) -> None:
         """Something discrete may have changed: schedules the frame if that is mapped here."""

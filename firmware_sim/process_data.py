@@ -17,7 +17,7 @@ _WINDOW = key(0x1007)
 class ProcessData:
     """Works only between `start` and `stop`, which is while the node is operational."""
 
-    __slots__ = ("_app", "_cyclic", "_last_sync", "_running", "_values", "rpdos", "tpdos")
+    __slots__ = ("_app", "_cyclic", "_last_sync", "_running", "_values", "_waiting", "rpdos", "tpdos")
 
     def __init__(self, values: dict[int, Any], app: Application) -> None:
         self._values = values
@@ -27,6 +27,7 @@ class ProcessData:
         self.rpdos = [Rpdo(values, number) for number in range(PDOS)]
         self.tpdos = [Tpdo(values, number) for number in range(PDOS)]
         self._cyclic: tuple[Tpdo, ...] = ()
+        self._waiting = False  # whether an RPDO waits for SYNC
 
     def rebuild(self, t: int, index: int) -> None:
         """Compiles the PDO anew that this object (parameters or mapping) belongs to."""
@@ -51,6 +52,7 @@ class ProcessData:
             tpdo.stop()
         for rpdo in self.rpdos:
             rpdo.pending = None
+        self._waiting = False
 
     @property
     def due(self) -> int:
@@ -61,10 +63,12 @@ class ProcessData:
         self._last_sync = t
         self._app.refresh()
         frames = [frame for tpdo in self._cyclic if (frame := tpdo.sync()) is not None]
-        for rpdo in self.rpdos:
-            if rpdo.pending is not None:
-                self._apply(rpdo, rpdo.pending)
-                rpdo.pending = None
+        if self._waiting:
+            self._waiting = False
+            for rpdo in self.rpdos:
+                if rpdo.pending is not None:
+                    self._apply(rpdo, rpdo.pending)
+                    rpdo.pending = None
         return frames
 
     def receive(self, t: int, rpdo: Rpdo, data: bytes) -> bool:
@@ -73,8 +77,11 @@ class ProcessData:
             return False
         if not rpdo.synchronous:
             self._apply(rpdo, data)
-        elif not self._values[_WINDOW] or t - self._last_sync <= self._values[_WINDOW] * 1000:
-            rpdo.pending = bytes(data)
+        else:
+            window = self._values[_WINDOW]  # µs
+            if not window or t - self._last_sync <= window * 1000:
+                rpdo.pending = bytes(data)
+                self._waiting = True
         return True
 
     def event(self, t: int) -> None:
@@ -96,6 +103,4 @@ class ProcessData:
 
     def _apply(self, rpdo: Rpdo, data: bytes) -> None:
         if rpdo.apply(data):
-            if rpdo.controls:
-                self._app.changed(0x6040)
-            self._app.changed(0x60FF)
+            self._app.changed(0x6040 if rpdo.controls else 0x60FF)

@@ -17,14 +17,13 @@ _VELOCITY_REVERSED, _POSITION_REVERSED = 0x40, 0x80
 
 
 class Settings(NamedTuple):
-    """unit: rad/s of one count/s; direction, position_direction: ±1 (607E); max_speed, threshold, window:
-    rad/s; rise, slew and falls: rad/s a tick; trip: mA; least: quarters of a volt;
-    torque_scale, current_scale: per mille of the rated value a mA.
+    """unit: rad/s of one count/s; polarity: ±1, of the position; max_speed, threshold, window: rad/s;
+    rise, slew and falls: rad/s a tick; trip: mA; least: quarters of a volt; torque_scale, current_scale:
+    per mille of the rated value a mA. unit and both scales are negative where velocities are reversed (607E).
     """
 
     unit: float
-    direction: int
-    position_direction: int
+    polarity: int
     max_speed: float
     threshold: float
     window: float
@@ -40,11 +39,11 @@ class Settings(NamedTuple):
 def read_settings(values: Values) -> Settings:
     """Returns the settings that these values mean."""
     unit = 2.0 * math.pi / values[key(0x2001)]
+    direction = -1 if values[key(0x607E)] & _VELOCITY_REVERSED else 1
     slew = values[key(0x2013, 4)]
     return Settings(
-        unit=unit,
-        direction=-1 if values[key(0x607E)] & _VELOCITY_REVERSED else 1,
-        position_direction=-1 if values[key(0x607E)] & _POSITION_REVERSED else 1,
+        unit=unit * direction,
+        polarity=-1 if values[key(0x607E)] & _POSITION_REVERSED else 1,
         max_speed=values[key(0x607F)] * unit,
         threshold=values[key(0x606F)] * unit,
         window=values[key(0x606D)] * unit,
@@ -57,8 +56,8 @@ def read_settings(values: Values) -> Settings:
         },
         trip=values[key(0x2013, 2)] * 1000.0,
         least=values[key(0x2013, 3)] * 4.0,
-        torque_scale=1000.0 * values[key(0x2012, 2)] / values[key(0x6076)],
-        current_scale=1000.0 / values[key(0x6075)],
+        torque_scale=direction * 1000.0 * values[key(0x2012, 2)] / values[key(0x6076)],
+        current_scale=direction * 1000.0 / values[key(0x6075)],
     )
 
 

@@ -30,6 +30,10 @@ class Speedmeter:
         last = self._counts
         self._counts = counts
         if last is not None:
-            moved = (counts - last + _HALF) % _TURN - _HALF
-            self.speed += self._gain * (moved * self._scale - self.speed)
+            moved = counts - last
+            if not -_HALF <= moved < _HALF:
+                moved = (moved + _HALF) % _TURN - _HALF
+            speed = self.speed
+            self.speed = speed = speed + self._gain * (moved * self._scale - speed)
+            return speed
         return self.speed

@@ -21,48 +21,56 @@ FOLLOWING: Final = 0x1000  # in CSV
 _STATUS, _DEMAND, _VELOCITY, _POSITION = key(0x6041), key(0x606B), key(0x606C), key(0x6064)
 _TORQUE, _CURRENT, _DC_LINK = key(0x6077), key(0x6078), key(0x6079)
 _MODE, _TARGET = key(0x6061), key(0x60FF)
-_I16, _I32 = (1 << 15) - 1, (1 << 31) - 1
+_ENABLED: Final = State.ENABLED  # bound: a look-up of a member takes time
+# Limits of the objects; those that numbers are compared with are of their own type, which is faster.
+_I16, _I32 = 32767.0, 2147483647.0
+_LEAST, _MOST = -(1 << 31), (1 << 31) - 1
 
 
-def _within(value: float, most: int) -> int:
-    return -most if value < -most else most if value > most else round(value)
+def _rounded(value: float, most: float) -> int:
+    if not -most <= value <= most:
+        value = most if value > 0.0 else -most
+    return round(value)
 
 
 def statusword(axis: Axis) -> int:
     """Returns the statusword (6041)."""
-    settings = axis.settings
-    word = axis.state | REMOTE
+    state, speed, settings = axis.state, axis.meter.speed, axis.settings
+    word = state | REMOTE
     if axis.supply >= settings.least:
         word |= VOLTAGE
-    speed = axis.meter.speed
-    slow = -settings.threshold <= speed <= settings.threshold
+    if axis.clipped or axis.limited:
+        word |= LIMITED
+    threshold = settings.threshold
+    slow = -threshold <= speed <= threshold
     cyclic = axis.values[_MODE] != PROFILE_VELOCITY
-    if axis.halted or axis.stop is not None:
-        if slow:
-            word |= TARGET_REACHED
-    elif not cyclic and axis.state is State.ENABLED:
-        target = axis.plan.target
+    going = axis.stop is None and not axis.halted
+    if not going and slow:
+        word |= TARGET_REACHED
+    if cyclic:
+        if going and state is _ENABLED:
+            word |= FOLLOWING
+        return word
+    if slow:
+        word |= SPEED_ZERO
+    if going and state is _ENABLED:
+        target, _, _ = axis.plan
         if axis.speed_ref == target and abs(speed - target) <= settings.window:
             word |= TARGET_REACHED
-    if axis.clipped or abs(axis.values[_TARGET]) * settings.unit > settings.max_speed:
-        word |= LIMITED
-    if cyclic:
-        if axis.state is State.ENABLED and axis.stop is None and not axis.halted:
-            word |= FOLLOWING
-    elif slow:
-        word |= SPEED_ZERO
     return word
 
 
 def refresh(axis: Axis) -> None:
     """Writes statusword and actual values into the dictionary, in the units and signs of the bus."""
     values, settings = axis.values, axis.settings
-    direction, unit = settings.direction, settings.unit
+    unit, current = settings.unit, axis.current
     values[_STATUS] = statusword(axis)
-    values[_DEMAND] = _within(axis.speed_ref * direction / unit, _I32)
-    values[_VELOCITY] = _within(axis.meter.speed * direction / unit, _I32)
-    values[_POSITION] = (axis.counts * settings.position_direction + _I32 + 1) % (2 * _I32 + 2) - _I32 - 1
-    current = axis.current * direction
-    values[_TORQUE] = _within(current * settings.torque_scale, _I16)
-    values[_CURRENT] = _within(current * settings.current_scale, _I16)
+    values[_DEMAND] = _rounded(axis.speed_ref / unit, _I32)
+    values[_VELOCITY] = _rounded(axis.meter.speed / unit, _I32)
+    position = axis.counts * settings.polarity
+    if not _LEAST <= position <= _MOST:  # mirrored, the lowest count has no counterpart
+        position = (position - _LEAST) % (1 << 32) + _LEAST
+    values[_POSITION] = position
+    values[_TORQUE] = _rounded(current * settings.torque_scale, _I16)
+    values[_CURRENT] = _rounded(current * settings.current_scale, _I16)
     values[_DC_LINK] = axis.supply * 250

@@ -14,13 +14,14 @@ class VariableStructurePi:
     __slots__ = ("_gains", "_rate", "integral")
 
     def __init__(self, gains: Gains) -> None:
-        self._gains = gains
+        self._gains = tuple(gains)  # a plain one is taken apart in a fifth of the time
         self._rate = ErrorRate(gains.rate_filter)
         self.integral = 0.0
 
     def reset(self, ref: float, speed: float, duty: float) -> None:
         self._rate.reset(ref, speed)
-        self.integral = duty - self._gains.kp * (ref - speed)
+        kp, *_ = self._gains
+        self.integral = duty - kp * (ref - speed)
 
     def step(self, ref: float, speed: float, low: float = -1.0, high: float = 1.0) -> float:
         """Returns the duty: u = kp e + ∫ (ki e + k_aw (clip(u) − u)), kp and ki after m(σ)."""
@@ -30,11 +31,13 @@ class VariableStructurePi:
         size = e if e > 0.0 else -e
         m = ((sigma if e > 0.0 else -sigma) - start) / width
         if m > 0.0:
-            m = min(m, 1.0)
+            if m > 1.0:
+                m = 1.0
             kp *= 1.0 + kp_rise * m
             if size < reach:
                 ki *= 1.0 + ki_rise * m * (1.0 - size / reach)
-        u = kp * e + self.integral
+        integral = self.integral
+        u = kp * e + integral
         applied = low if u < low else high if u > high else u
-        self.integral += TICK * (ki * e + anti_windup * (applied - u))
+        self.integral = integral + TICK * (ki * e + anti_windup * (applied - u))
         return applied

@@ -27,7 +27,7 @@ Route = tuple["Axis", Callable[[bytes], tuple[Any, ...]], tuple[int, ...], bool]
 
 
 class Axis:
-    """State of one drive: `values` by slot, when it was heard, what it is told to do.
+    """State of one drive: raw `values` by slot, when it was heard, what it is told to do.
 
     state: bits of the statusword that tell states apart; fresh: number of the SYNC that the last position
     answered; position: raw, at the last complete set; heard: when its last PDO came.
@@ -55,7 +55,7 @@ class Axis:
     def __init__(self, node: Node) -> None:
         table = node.table
         self.node = node
-        self.values: list[float] = [_ENABLED, nan, 0, nan, 0]
+        self.values: list[Any] = [_ENABLED, nan, 0, nan, 0]
         self.state = _ENABLED
         self.fresh = 0
         self.position: int | None = None
@@ -85,14 +85,16 @@ class Axis:
     def target(self, speed: float) -> Frame:
         """Returns the RPDO that asks for a speed (rad/s at the wheel), limited to what the object holds."""
         low, high = self._limits
-        raw = min(max(round(speed * self._velocity), low), high)
+        raw = round(speed * self._velocity)
+        if not low <= raw <= high:
+            raw = low if raw < low else high
         self.speed_ref = speed
         word = self.controlword
         return Frame(self._rpdo, self._pack(word, raw) if self._word_first else self._pack(raw, word))
 
     def turned(self) -> float:
         """Returns the wheel's turn (rad) since the last complete set, across the wrap of 32 bits."""
-        position = int(self.values[POSITION])
+        position: int = self.values[POSITION]
         before = position if self.position is None else self.position
         self.position = position
         return ((position - before + 0x80000000 & 0xFFFFFFFF) - 0x80000000) * self.radians_per_count
@@ -100,7 +102,7 @@ class Axis:
     @property
     def speed(self) -> float:
         """Measured rad/s at the wheel, NaN until the first PDO."""
-        return self.values[VELOCITY] / self._velocity
+        return float(self.values[VELOCITY] / self._velocity)
 
     def signals(self) -> DriveSignals:
         """Returns the drive as the controller sees it now."""

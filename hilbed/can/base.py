@@ -69,12 +69,12 @@ class CanBase:
                 ears.ignored += 1
                 continue
             values = axis.values
-            for slot, value in zip(slots, raw, strict=True):
+            for slot, value in zip(slots, raw):  # noqa: B905  (as long as each other by construction)
                 values[slot] = value
             axis.heard = at
             if positioned:
                 axis.fresh = self._syncs
-            if int(values[STATUS]) & STATE_BITS != axis.state:
+            if values[STATUS] & STATE_BITS != axis.state:
                 ears.new_state(at, axis)
         self._watch(t)
         return self._odometry(t)
@@ -110,7 +110,7 @@ class CanBase:
     def faulted(self) -> tuple[str, ...]:
         """Names of the drives whose last statusword says fault."""
         faults = (cia402.FAULT, cia402.FAULT_REACTION)
-        return tuple(a.node.name for a in self._axes if cia402.state_of(int(a.values[STATUS])) in faults)
+        return tuple(a.node.name for a in self._axes if cia402.state_of(a.values[STATUS]) in faults)
 
     @property
     def silent(self) -> tuple[str, ...]:

@@ -44,7 +44,7 @@ class Ears:
 
     def new_state(self, t: Nanos, axis: Axis) -> None:
         """Notes the state of a statusword that has changed, unless it is the wanted one."""
-        statusword = int(axis.values[STATUS])
+        statusword = axis.values[STATUS]
         axis.state = statusword & STATE_BITS
         state = cia402.state_of(statusword)
         if state != cia402.ENABLED:
