@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
@@ -41,10 +42,14 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
             status = REFUSED
         except HilbedError as error:
             print(error, file=sys.stderr)
-            status = BROKEN
+            status = BROKEN if options.command is _run else REFUSED
         except KeyboardInterrupt:
             print("interrupted", file=sys.stderr)
             status = INTERRUPTED
+        except Exception:
+            traceback.print_exc()
+            print("This is a mistake in hilbed, not in what it was given.", file=sys.stderr)
+            status = BROKEN
     sys.exit(status)
 
 

@@ -61,6 +61,7 @@ class BulletWorld:
         self.angles = [0.0] * len(self._joints)
         self.speeds = [0.0] * len(self._joints)
         self.slips = [0.0] * len(self._joints)
+        self._yaw: float = start.yaw
         self._locate()
 
     def _centre_of_mass(self) -> tuple[float, float, float]:

@@ -68,20 +68,28 @@ def _nodes(robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec, period
         yield Problem(("bus", "bitrate"), f"{text}; a longer period or a higher bit rate would do")
 
 
-def _arena(plant: PlantSpec, reference: ReferenceSpec | None, robot: RobotSpec) -> Problems:
-    if not isinstance(plant, SimulatedSpec):
+def _beacons(plant: PlantSpec) -> Problems:
+    if isinstance(plant, SimulatedSpec):
+        for k, beacon in enumerate(plant.beacons):
+            if max(map(abs, beacon.at)) > plant.arena:
+                text = f"plant.beacons.{k}.at: {beacon.at} is outside the world of ±{plant.arena:g} m"
+                yield Problem(("plant", "beacons", k, "at"), text)
+
+
+def _start(plant: PlantSpec, robot: RobotSpec) -> Problems:
+    if not isinstance(plant, SimulatedSpec) or robot.start is None:
         return
-    world = f"the world of ±{plant.arena:g} m"
-    for k, beacon in enumerate(plant.beacons):
-        if max(map(abs, beacon.at)) > plant.arena:
-            text = f"plant.beacons.{k}.at: {beacon.at} is outside {world}"
-            yield Problem(("plant", "beacons", k, "at"), text)
-    if robot.start is not None and max(map(abs, robot.start[:2])) > plant.arena:
-        yield Problem(("robot", "start"), f"robot.start: {robot.start} is outside {world}")
-    if reference is not None:
+    if max(map(abs, robot.start[:2])) > plant.arena:
+        text = f"robot.start: {robot.start[:2]} is outside the world of ±{plant.arena:g} m"
+        yield Problem(("robot", "start"), text)
+
+
+def _path(plant: PlantSpec, reference: ReferenceSpec | None) -> Problems:
+    if isinstance(plant, SimulatedSpec) and reference is not None:
         box = reference.path().extent()
         if max(map(abs, box)) > plant.arena:
-            text = f"reference: the path reaches from {box[:2]} to {box[2:]}, outside {world}"
+            reach = f"x {box[0]:g} … {box[2]:g}, y {box[1]:g} … {box[3]:g} m"
+            text = f"reference: the path reaches {reach}, outside the world of ±{plant.arena:g} m"
             yield Problem(("reference",), text)
 
 
@@ -157,5 +165,6 @@ def _judged(criteria: Mapping[str, CriterionSpec]) -> Problems:
 
 
 CHECKS: tuple[Callable[..., Problems], ...] = (
-    _periods, _ticks, _nodes, _arena, _files, _food, _guidance, _recorded, _disturbed, _judged,
+    _periods, _ticks, _nodes, _beacons, _start, _path,
+    _files, _food, _guidance, _recorded, _disturbed, _judged,
 )  # fmt: skip

@@ -62,6 +62,8 @@ def _valid_blocks(data: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the blocks that hold by themselves, so that checks across them can still speak."""
     blocks: dict[str, Any] = {}
     for name, field in Scenario.model_fields.items():
+        if name not in data and field.is_required():
+            continue
         try:
             blocks[name] = _block(field, data[name]) if name in data else field.get_default()
         except ValidationError:

@@ -37,9 +37,9 @@ class Scenario(Spec):
     nodes: dict[str, Annotated[NodeSpec, Word]] = {}
     bus: Annotated[BusSpec, Word] = BusSpec()
     sensors: dict[str, Annotated[SensorSpec, Word]] = {}
-    estimator: Annotated[EstimatorSpec, Word]
+    estimator: Annotated[EstimatorSpec, ByKind, Word]
     controller: Annotated[ControllerSpec, ByKind, Word] | None = None
-    reference: ReferenceSpec | None = None
+    reference: Annotated[ReferenceSpec, ByKind] | None = None
     disturbances: list[Annotated[DisturbanceSpec, ByKind]] = []
     criteria: dict[str, CriterionSpec] = {}
     record: Literal["all", "signals", "none"] = "all"

@@ -104,7 +104,7 @@ def keys_at(model: type[BaseModel], path: Sequence[str | int]) -> list[str]:
     inside: list[Any] = [model]
     for step in path:
         inside = [inner for annotation in inside for inner in _enter(annotation, step)]
-    return [key for annotation in inside for choice in _choices(annotation) for key in _fields(choice)]
+    return [str(key) for annotation in inside for choice in _choices(annotation) for key in _fields(choice)]
 
 
 def _enter(annotation: Any, step: str | int) -> Iterator[Any]:

@@ -1,0 +1,156 @@
+"""What is wrong is told with file and line, all at once, with status 4 and nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.program.hilbed import hilbed
+
+GOOD = """\
+# A line
+duration: 2
+period: 0.01
+plant:
+  kind: bullet
+  beacons:
+    - {at: [3, 1]}
+sensors:
+  camera: {kind: camera}
+estimator: ekf
+controller: lqr
+reference: {kind: line, length: 4}
+"""
+
+
+def wrong(tmp_path: Path, text: str) -> list[str]:
+    """Returns what is said about a scenario that must be refused."""
+    file = tmp_path / "mine.yaml"
+    file.write_text(text)
+    ended = hilbed("run", file, "--out", tmp_path / "run")
+    assert ended.status == 4, ended.err
+    assert ended.out == ""
+    assert not (tmp_path / "run").exists()
+    assert "Traceback" not in ended.err
+    return [line.replace(str(file), "mine.yaml") for line in ended.err.splitlines()]
+
+
+def test_the_good_one_is_good(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(GOOD)
+    assert hilbed("check", tmp_path / "mine.yaml").status == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("duration", "duratoin", "mine.yaml:2: unknown key 'duratoin'; did you mean 'duration'?"),
+        ("duration: 2\n", "", "mine.yaml:1: duration is missing"),
+        ("duration: 2", "duration: two", "mine.yaml:2: duration: input should be a valid number"),
+        ("duration: 2", "duration: -2", "mine.yaml:2: duration: input should be greater than 0, given -2"),
+        ("duration: 2", "duration: 2.005", "mine.yaml:2: duration: 2.005 s is not a multiple of the period"),
+        (
+            "period: 0.01",
+            "period: 0.0105",
+            "mine.yaml:3: period: 0.0105 s is not a multiple of the plant's tick",
+        ),
+        ("period: 0.01", "period: 0.001", "mine.yaml:"),
+        (
+            "kind: bullet",
+            "kind: mujoco",
+            "mine.yaml:4: plant: unknown kind 'mujoco'; known: bullet, recorded",
+        ),
+        (
+            "{at: [3, 1]}",
+            "{at: [30, 1]}",
+            "mine.yaml:7: plant.beacons.0.at: (30.0, 1.0) is outside the world",
+        ),
+        ("length: 4", "length: 40", "mine.yaml:12: reference: the path reaches x 0 … 40"),
+        (
+            "{kind: camera}",
+            "{kind: camera, fov_deg: 200}",
+            "mine.yaml:9: sensors.camera.fov_deg: input should be",
+        ),
+        (
+            "estimator: ekf",
+            "estimator: ukf",
+            "mine.yaml:10: estimator: unknown kind 'ukf'; did you mean 'ekf'?",
+        ),
+        ("sensors:\n  camera: {kind: camera}\n", "", "mine.yaml:8: estimator: ekf needs readings"),
+        ("controller: lqr\n", "", "controller is missing"),
+        ("reference: {kind: line, length: 4}\n", "", "reference is missing"),
+        ("estimator", "criteria: {croos_track_rms: {max: 1}}\nestimator", "did you mean 'cross_track_rms'?"),
+        ("estimator", "criteria: {cross_track_rms: {}}\nestimator", "needs exactly one of max and min"),
+        (
+            "estimator",
+            "robot: {kind: diffdrive, urdf: nowhere.urdf}\nestimator",
+            "there is no file nowhere.urdf",
+        ),
+        ("estimator", "robot: {kind: diffdrive, urdf: ../../etc/passwd}\nestimator", "leaves"),
+        ("estimator", "nodes: {left: ecu}\nestimator", "'ecu' comes with the real bus"),
+        ("estimator", "nodes: {front: simulated}\nestimator", "the robot has no drive 'front'"),
+        ("estimator", "bus: {kind: socketcan}\nestimator", "bus.kind: 'socketcan'"),
+        ("estimator", "bus: {bitrate: 123}\nestimator", "no bit rate of CiA"),
+        ("estimator", "bus: {bitrate: 50000}\nestimator", "of a bus of 50000 bit/s"),
+        (
+            "estimator",
+            "disturbances: [{kind: load_torque, drive: middle, size: 1}]\nestimator",
+            "mine.yaml:10: disturbances.0.drive: the robot has no drive 'middle'",
+        ),
+        ("# A line", "a: [", "mine.yaml:"),
+        ("# A line", "a: &a [*a]", "mine.yaml:"),
+    ],
+)
+def test_it_is_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
+    assert old in GOOD
+    said = wrong(tmp_path, GOOD.replace(old, new, 1))
+    assert any(message in line for line in said), said
+
+
+def test_everything_is_told_at_once(tmp_path: Path) -> None:
+    text = (
+        GOOD.replace("period: 0.01", "perod: 0.01")
+        .replace("[3, 1]", "[30, 1]")
+        .replace("length: 4", "length: x")
+    )
+    said = wrong(tmp_path, text)
+    assert [line.split(":")[1] for line in said] == ["3", "7", "12"]
+
+
+def test_a_urdf_without_the_joints_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "body.urdf").write_text("<robot name='x'><link name='base_link'/></robot>")
+    said = wrong(
+        tmp_path, GOOD.replace("estimator", "robot: {kind: diffdrive, urdf: body.urdf}\nestimator", 1)
+    )
+    assert "left_wheel_joint" in " ".join(said)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("run", "dmeo"), "unknown scenario 'dmeo'; did you mean 'demo'?"),
+        (("run", "nowhere.yaml"), "there is no file nowhere.yaml"),
+        (("run", "demo", "-i", "virtual"), "unrecognized arguments"),
+        (("run", "demo", "--record", "some"), "invalid choice"),
+        (("run", "demo", "--seed", "-1"), "seed"),
+        (("run", "demo", "--set", "duration"), "give PATH=VALUE"),
+        (("run", "demo", "--set", "sensors.camera.rat=5"), "--set sensors.camera.rat=5: unknown key 'rat'"),
+        (("run", "demo", "--set", "duration=1", "--out", "/dev/null"), "/dev/null"),
+        (("run", "demo", "--set", "duration=1", "--out", "/proc/run"), "/proc/run"),
+        (("sweep", "demo", "--seeds", "5..1"), "there is no seed"),
+        (("sweep", "demo", "--seeds", "a"), "give A..B"),
+        (("report", "nowhere"), "nowhere"),
+        (("fit", "nowhere"), "nowhere"),
+        (("bench", "dmeo"), "did you mean 'demo'?"),
+        (("frobnicate",), "invalid choice"),
+        ((), "required"),
+    ],
+)
+def test_a_command_that_cannot_be_taken_ends_with_4(
+    arguments: tuple[str, ...], message: str, tmp_path: Path
+) -> None:
+    ended = hilbed(*arguments, cwd=tmp_path)
+    assert ended.status == 4, ended.err
+    assert message in ended.err
+    assert "Traceback" not in ended.err
+    assert list(tmp_path.iterdir()) == []
