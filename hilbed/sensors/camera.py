@@ -15,7 +15,7 @@ from hilbed.effects import Effects
 from hilbed.ports import Witness
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.delivery import Delivery, DeliverySpec
-from hilbed.sensors.eye import Eye, Glimpse
+from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Ticket
 from hilbed.sensors.faults import misses, noisy, spurious
 from hilbed.sensors.pan import make_pan
 from hilbed.sensors.pan_spec import FixedSpec, PanSpec
@@ -24,7 +24,7 @@ from hilbed.types import Nanos, Reading, Snapshot, Truth
 from hilbed.vision.egl import LARGEST_FRAME
 from hilbed.vision.lens import LARGEST, SMALLEST, Lens
 from hilbed.vision.seams import Detection, Image
-from hilbed.vision.truth import SPURIOUS, match
+from hilbed.vision.truth import SPURIOUS
 
 Size = Annotated[int, Field(ge=SMALLEST, le=LARGEST)]
 
@@ -64,19 +64,23 @@ class CameraSpec(DeliverySpec):
         return Lens(self.width, self.height, radians(self.fov_deg))
 
 
-class Finding(NamedTuple):
-    """A detection, the beacon it truly shows and that one's azimuth (rad, robot's frame); −1, NaN: none."""
+class Exposure(NamedTuple):
+    """A frame under way: at a pan angle (rad, robot's frame), with a mean number of false detections."""
 
-    detection: Detection
-    beacon: int
-    azimuth: float
+    t: Nanos
+    delivered: Nanos
+    pan: float
+    false: float
+    ticket: Ticket
 
 
 class Camera:
     """A sensor of azimuths: exposes at its rate, delivers after its latency, tells the witness the truth.
 
-    Its time without rendering goes to cost.vision. Raises ScenarioError where the pan axis is to follow a
-    beacon that the camera cannot recognise.
+    A frame is rendered and judged when it is exposed, but its result is only asked for when it is delivered,
+    or when the next one is exposed: an eye in another process has that long. Time without rendering goes to
+    cost.vision. Raises ScenarioError where the pan axis is to follow a beacon that the camera cannot
+    recognise.
     """
 
     def __init__(
@@ -88,6 +92,7 @@ class Camera:
         self._names = names(spec, eye.beacons)
         self._pan = make_pan(spec.pan, self._names)
         self._delivery = Delivery(spec, rng)
+        self._under_way: Exposure | None = None
 
     @property
     def due(self) -> Nanos:
@@ -96,44 +101,58 @@ class Camera:
 
     def sample(self, truth: Truth) -> None:
         """Exposes a frame at truth.t, unless the camera is blind, and sends its azimuths on their way."""
-        start, rendered = perf_counter(), self._cost.render
+        self.flush()
         pan = self._pan.turn(truth.t)
         delivered = self._delivery.expose(truth.t)
         if self._effects.blind:
             self._pan.saw([])
             return
-        glimpse = self._eye.look(truth.pose, pan)
-        findings = self._findings(glimpse, pan)
-        self._pan.saw([finding.detection for finding in findings])
-        readings = [azimuth(truth.t, delivered, pan, finding.detection) for finding in findings]
-        arrives = self._delivery.put(readings)
-        self._cost.vision += perf_counter() - start - (self._cost.render - rendered)
-        if arrives:
-            for reading, finding in zip(readings, findings, strict=True):
-                self._witness.reading(reading, finding.beacon, (finding.azimuth,))
-        self._witness.snapshot(snapshot(truth.t, glimpse.image, pan, findings))
+        false = self._spec.spurious + self._effects.spurious
+        self._under_way = Exposure(truth.t, delivered, pan, false, self._eye.look(truth.pose, pan))
 
     def read(self, t: Nanos) -> list[Reading]:
         """Returns the azimuths delivered up to and including t since the last call, oldest first."""
+        if self._under_way is not None and self._under_way.delivered <= t:
+            self.flush()
         return self._delivery.read(t)
 
+    def flush(self) -> None:
+        """Takes the frame that is under way, if any, from the eye, and tells the witness; once at the end."""
+        if self._under_way is not None:
+            exposure, glimpse = self._under_way, self._under_way.ticket()
+            self._under_way = None
+            self._develop(exposure, glimpse)
+
     def close(self) -> None:
-        """Gives back what the renderer holds."""
+        """Gives back what the eye holds; a frame under way is lost."""
+        self._under_way = None
         self._eye.close()
 
-    def _findings(self, glimpse: Glimpse, pan: float) -> list[Finding]:
+    def _develop(self, exposure: Exposure, glimpse: Glimpse) -> None:
+        """Sends a frame's azimuths on their way, with all that goes wrong with them."""
+        start = perf_counter()
+        t, delivered, pan, false, _ = exposure
+        findings = self._faulty(glimpse.findings, false)
+        self._pan.saw([finding.detection for finding in findings])
+        readings = [azimuth(t, delivered, pan, finding.detection) for finding in findings]
+        if self._delivery.put(readings):
+            for reading, finding in zip(readings, findings, strict=True):
+                self._witness.reading(reading, finding.beacon, (finding.azimuth,))
+        self._witness.snapshot(snapshot(t, glimpse.image, pan, findings))
+        self._cost.vision += perf_counter() - start
+
+    def _faulty(self, findings: Sequence[Finding], false: float) -> list[Finding]:
         """Returns what the camera reports, misses, noise and false detections applied, from left to right."""
-        spec, rng, truth = self._spec, self._rng, glimpse.truth
-        found = []
-        missed = misses(len(glimpse.detections), spec.missed, rng)
-        for detection, miss in zip(glimpse.detections, missed, strict=True):
-            if not miss:
-                beacon = match(pan + detection.azimuth, truth)
-                true = truth[beacon].azimuth if beacon != SPURIOUS else nan
-                found.append(Finding(noisy(detection, spec.noise, rng), beacon, true))
-        false = spurious(spec.spurious + self._effects.spurious, self._lens, self._names, rng)
-        found += [Finding(detection, SPURIOUS, nan) for detection in false]
-        return sorted(found, key=lambda finding: finding.detection.column)
+        spec, rng = self._spec, self._rng
+        missed = misses(len(findings), spec.missed, rng)
+        found = [finding for finding, miss in zip(findings, missed, strict=True) if not miss]
+        if spec.noise:
+            found = [f._replace(detection=noisy(f.detection, spec.noise, rng)) for f in found]
+        if false:
+            made_up = spurious(false, self._lens, self._names, rng)
+            found += [Finding(detection, SPURIOUS, nan) for detection in made_up]
+            found.sort(key=lambda finding: finding.detection.column)
+        return found
 
 
 def azimuth(t: Nanos, delivered: Nanos, pan: float, detection: Detection) -> Reading:
@@ -157,12 +176,19 @@ def names(spec: CameraSpec, beacons: Sequence[BeaconSpec]) -> list[int | None]:
     return [k if known and colours.count(colour) == 1 else None for k, colour in enumerate(colours)]
 
 
-def open_eye(spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost) -> Eye:
-    """Returns the eye that a scenario describes; raises ScenarioError where its renderer does not work."""
+def open_eye(spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, separate: bool = False) -> Eye:
+    """Returns the eye that a scenario describes, in a process of its own if `separate`.
+
+    Both see the same to the bit. Raises ScenarioError where the renderer does not work.
+    """
+    if separate:
+        from hilbed.sensors.remote import RemoteEye
+
+        return RemoteEye(spec, beacons, cost)
     from hilbed.vision.detect import ColourDetector
     from hilbed.vision.render import BulletRenderer, Scenery
 
     lens = spec.lens
     renderer = BulletRenderer(lens, Scenery(beacons, spec.renderer == "egl", spec.ground), cost)
     detector = ColourDetector(lens, beacons, spec.identity == "anonymous")
-    return Eye(spec.mount, beacons, renderer, detector, cost)
+    return LocalEye(spec.mount, beacons, renderer, detector, cost)

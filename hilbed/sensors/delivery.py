@@ -27,23 +27,20 @@ class DeliverySpec(Spec):
 
 
 class Delivery:
-    """The clock of one sensor and the readings that are on their way."""
+    """The clock of one sensor and the readings that are on their way; `due`: when to take the next sample."""
 
     def __init__(self, spec: DeliverySpec, rng: np.random.Generator) -> None:
         self._rate, self._latency, self._loss = spec.rate, nanos(spec.latency), spec.loss
         self._rng = rng
         self._count = 0
+        self.due: Nanos = 0
         self._waiting: deque[Reading] = deque()
-
-    @property
-    def due(self) -> Nanos:
-        """When the next sample is to be taken."""
-        return round(self._count * SECOND / self._rate)
 
     def expose(self, t: Nanos) -> Nanos:
         """Notes a sample taken at t, makes the next one due, and returns when this one is delivered."""
         while self.due <= t:
             self._count += 1
+            self.due = round(self._count * SECOND / self._rate)
         return t + self._latency
 
     def put(self, readings: Iterable[Reading]) -> bool:

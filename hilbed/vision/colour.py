@@ -16,7 +16,7 @@ Labels = npt.NDArray[np.uint8]
 BACKGROUND, OTHER = 0, 255
 HUES = 180  # OpenCV counts hue in steps of 2°
 NEAREST = 15.0 / 2.0  # half the distance between the hues of two beacons
-_GREY = (0, 100, 40)  # below this saturation or value a pixel has no colour
+_LEAST_SATURATION, _LEAST_VALUE = 100, 40  # below either a pixel has no colour
 
 
 class Palette:
@@ -28,12 +28,11 @@ class Palette:
             raise ValueError("more colours than labels")
         self._labels = np.array([self._label(hue) for hue in range(256)], np.uint8)
 
-    def label(self, image: Image) -> Labels:
-        """Returns (H, W): BACKGROUND, the label of a colour, or OTHER for a colour that is none of them."""
-        hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV)
-        coloured = cv2.inRange(hsv, _GREY, (255, 255, 255))
-        labels = cv2.LUT(cv2.extractChannel(hsv, 0), self._labels)
-        return np.asarray(cv2.bitwise_and(labels, coloured), np.uint8)
+    def label(self, pixels: Image) -> Labels:
+        """Returns (n,) for (1, n, 4) RGBA: BACKGROUND, a colour's label, or OTHER for any other colour."""
+        hsv = cv2.cvtColor(pixels, cv2.COLOR_RGB2HSV)[0]
+        coloured = (hsv[:, 1] >= _LEAST_SATURATION) & (hsv[:, 2] >= _LEAST_VALUE)
+        return np.where(coloured, self._labels[hsv[:, 0]], np.uint8(BACKGROUND))
 
     def _label(self, hue: int) -> int:
         distances = [abs((hue - _hue(colour) + HUES / 2) % HUES - HUES / 2) for colour in self.colours]

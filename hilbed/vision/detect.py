@@ -10,7 +10,7 @@ from hilbed.scene import BeaconSpec
 from hilbed.types import Array
 from hilbed.vision.colour import Palette
 from hilbed.vision.lens import Lens
-from hilbed.vision.runs import Indices, Runs, find_runs, gather, starts
+from hilbed.vision.runs import Indices, Runs, bounds, find_runs, gather
 from hilbed.vision.seams import Detection, Image
 
 FEWEST_ROWS = 3
@@ -44,61 +44,61 @@ class ColourDetector:
         self._angle = np.arctan((lens.cx - edges) / lens.focal)
         self._cos = np.cos(self._angle)
         self._drop = (np.arange(lens.height) - lens.cy) / lens.focal
+        self._slope = np.abs(self._drop)
+        self._focal = lens.focal
 
     def detect(self, image: Image) -> list[Detection]:
         """Returns what is seen in an (H, W, 3) RGB image, from left to right."""
-        runs = find_runs(self._palette.label(image))
+        runs = find_runs(image, self._palette)
         if runs.row.size == 0:
             return []
         runs, blob = self._trim(*gather(runs))
         if runs.row.size == 0:
             return []
-        return sorted(self._measure(runs, starts(blob)), key=lambda detection: detection.column)
+        return sorted(self._measure(runs, blob), key=lambda detection: detection.column)
 
     def _trim(self, runs: Runs, blob: Indices) -> tuple[Runs, Indices]:
         """Leaves out rows that cross the rims of foot and top, and blobs with few rows or two runs in one."""
-        first = starts(blob)
-        top, bottom = np.minimum.reduceat(runs.row, first), np.maximum.reduceat(runs.row, first)
-        count = np.diff(first, append=blob.size)
+        row = runs.row
+        first, count = bounds(blob)
+        top, bottom = np.minimum.reduceat(row, first), np.maximum.reduceat(row, first)
         radius = 0.5 * np.maximum.reduceat(runs.right - runs.left, first)
-        highest, lowest = top + radius * np.abs(self._drop[top]), bottom - radius * np.abs(self._drop[bottom])
+        highest, lowest = top + radius * self._slope[top], bottom - radius * self._slope[bottom]
         highest[count > bottom - top + 1] = np.inf
-        keep = (runs.row >= highest[blob]) & (runs.row <= lowest[blob])
-        keep &= np.bincount(blob, keep)[blob] >= FEWEST_ROWS
+        keep = (row >= highest[blob]) & (row <= lowest[blob])
+        keep &= np.add.reduceat(keep, first, dtype=np.intp)[blob] >= FEWEST_ROWS
         return runs.pick(keep), blob[keep]
 
-    def _measure(self, runs: Runs, first: Indices) -> list[Detection]:
-        """Returns the azimuth of each blob's axis; blobs begin at the indices `first`.
+    def _measure(self, runs: Runs, blob: Indices) -> list[Detection]:
+        """Returns the azimuth of each blob's axis.
 
         The edges of a cone obey azimuth = axis ± (a + b tan(depression)). In one row, left and right edge
         differ in depression where the beacon is off the middle of the image; b takes that out.
         """
-        left, right, drop = self._angle[runs.left], self._angle[runs.right], self._drop[runs.row]
-        low, high = drop * self._cos[runs.left], drop * self._cos[runs.right]
-        middle, half, depth = 0.5 * (left + right), 0.5 * (left - right), 0.5 * (low + high)
-        count = np.diff(first, append=runs.row.size)
+        first, count = bounds(blob)
+        blob = np.repeat(np.arange(first.size), count)
 
         def mean(x: Array) -> Array:
             return np.asarray(np.add.reduceat(x, first) / count)
 
-        depth -= np.repeat(mean(depth), count)
-        half -= np.repeat(mean(half), count)
-        taper = np.repeat(mean(depth * half) / mean(depth * depth), count)
+        left, right, drop = self._angle[runs.left], self._angle[runs.right], self._drop[runs.row]
+        low, high = drop * self._cos[runs.left], drop * self._cos[runs.right]
+        middle, half, depth = 0.5 * (left + right), 0.5 * (left - right), 0.5 * (low + high)
+        depth -= mean(depth)[blob]
+        half -= mean(half)[blob]
+        taper = (mean(depth * half) / mean(depth * depth))[blob]
         middle -= 0.5 * taper * (low - high)
         azimuth = mean(middle)
 
-        pixel = np.cos(azimuth) ** 2 / self._lens.focal
-        middle -= np.repeat(azimuth, count)
+        pixel = np.cos(azimuth) ** 2 / self._focal
+        middle -= azimuth[blob]
         half -= taper * depth
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
         steps = np.maximum.reduceat(runs.left, first) - np.minimum.reduceat(runs.left, first)
         rounding = np.where(steps > 0, _ROUNDING / (1 + steps), _UPRIGHT)
         std = pixel * np.maximum(rounding, _FINEST)
-        labels = runs.label[first]
-        return [
-            self._detection(float(azimuth[k]), float(std[k]), int(labels[k]))
-            for k in np.flatnonzero(rough <= ROUGH)
-        ]
+        found = zip(azimuth.tolist(), std.tolist(), runs.label[first].tolist(), rough.tolist(), strict=True)
+        return [self._detection(*one) for *one, off in found if off <= ROUGH]
 
     def _detection(self, azimuth: float, std: float, label: int) -> Detection:
         return Detection(azimuth, std, self._lens.column(azimuth), self._identity[label - 1])

@@ -88,7 +88,7 @@ class BulletRenderer:
                 lens.width, lens.height, view, self._projection, **_LIGHT, **_FAST, physicsClientId=client
             )
             cost.render += perf_counter() - start
-        rgba = np.asarray(picture[2], dtype=np.uint8).reshape(lens.height, lens.width, 4)
+        rgba = np.asarray(picture[2], np.uint8).reshape(lens.height, lens.width, 4)
         return np.asarray(cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB), np.uint8)
 
     def close(self) -> None:

@@ -1,13 +1,15 @@
-"""Stretches of one colour in the rows of a label image, and which of them belong together."""
+"""Stretches of one colour in the rows of an image, and which of them belong together."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
-from hilbed.vision.colour import BACKGROUND, OTHER, Labels
+from hilbed.vision.colour import BACKGROUND, OTHER, Palette
+from hilbed.vision.seams import Image
 
 Indices = npt.NDArray[np.intp]
 
@@ -30,31 +32,50 @@ class Runs(NamedTuple):
         return Runs(self.row[which], self.left[which], self.right[which], self.label[which])
 
 
-def find_runs(labels: Labels) -> Runs:
-    """Returns the runs of all colours in an (H, W) label image, row by row.
+def find_runs(image: Image, palette: Palette) -> Runs:
+    """Returns the runs of the palette's colours in an (H, W, 3) RGB image, row by row.
 
     A stretch that the border of the image or another colour cuts off is not a run: its edge is not the edge
     of the beacon.
     """
-    change = np.flatnonzero(labels[:, 1:] != labels[:, :-1])
-    row, before = np.divmod(change, labels.shape[1] - 1)
-    outside, inside = labels[row, before], labels[row, before + 1]
-    opens = (outside[:-1] == BACKGROUND) & (inside[:-1] != OTHER)
-    closes = (inside[1:] == BACKGROUND) & (row[1:] == row[:-1])
-    k = np.flatnonzero(opens & closes)
-    return Runs(row[k], before[k], before[k + 1], inside[k].astype(np.intp))
+    width = image.shape[1]
+    begin, pixel = _stretches(image)
+    label = palette.label(pixel)
+    change = (label[1:] != label[:-1]).nonzero()[0]
+    outside, inside, begin = label[change], label[change + 1], begin[change + 1]
+    row = begin // width
+    column = begin - row * width
+    # A change at column 0 is one between two rows and opens nothing.
+    opens = (outside[:-1] == BACKGROUND) & (inside[:-1] != OTHER) & (column[:-1] > 0)
+    k = (opens & (inside[1:] == BACKGROUND) & (row[1:] == row[:-1])).nonzero()[0]
+    return Runs(row[k], column[k] - 1, column[k + 1] - 1, inside[k].astype(np.intp))
+
+
+def _stretches(image: Image) -> tuple[Indices, Image]:
+    """Returns where each stretch of equal pixels begins, (n,) counted row by row, and its pixel (1, n, 4).
+
+    Each row begins a stretch. Only one pixel of each needs to be judged by its colour.
+    """
+    pixels = cv2.cvtColor(image, cv2.COLOR_RGB2RGBA).view(np.uint32)[:, :, 0]
+    begins = np.empty(pixels.shape, np.bool_)
+    begins[:, 0] = True
+    np.not_equal(pixels[:, 1:], pixels[:, :-1], out=begins[:, 1:])
+    begin = begins.ravel().nonzero()[0]
+    return begin, pixels.ravel()[begin].view(np.uint8).reshape(1, -1, 4)
 
 
 def gather(runs: Runs) -> tuple[Runs, Indices]:
     """Returns the runs ordered by blob and the blob (n,) of each: one colour, columns that overlap."""
     offset = runs.label * _SPAN
-    order = np.argsort(offset + runs.left, kind="stable")
-    runs, offset = runs.pick(order), offset[order]
-    reach = np.maximum.accumulate(offset + runs.right)
-    apart = (offset + runs.left)[1:] >= reach[:-1]
-    return runs, np.concatenate(([0], np.cumsum(apart)))
+    left = offset + runs.left
+    order = left.argsort(kind="stable")
+    left, reach = left[order], np.maximum.accumulate((offset + runs.right)[order])
+    blob = np.zeros(order.size, np.intp)
+    np.cumsum(left[1:] >= reach[:-1], out=blob[1:])
+    return runs.pick(order), blob
 
 
-def starts(blob: Indices) -> Indices:
-    """Returns the index of each blob's first run."""
-    return np.flatnonzero(np.diff(blob, prepend=-1))
+def bounds(blob: Indices) -> tuple[Indices, Indices]:
+    """Returns each blob's first run and number of runs, both (m,), from the blob (n,) of each run, n ≥ 1."""
+    edges = np.concatenate(([0], (blob[1:] != blob[:-1]).nonzero()[0] + 1, [blob.size]))
+    return edges[:-1], edges[1:] - edges[:-1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, hypot
+from math import atan2, hypot, remainder, tau
 from typing import NamedTuple
 
 from hilbed.angles import wrap
@@ -23,13 +23,13 @@ class Sight(NamedTuple):
 
 def sights(beacons: Sequence[BeaconSpec], x: float, y: float, yaw: float) -> list[Sight]:
     """Returns where each beacon is seen from an optical centre at x, y (m, map), relative to yaw (rad)."""
-    return [_sight(beacon, x, y, yaw) for beacon in beacons]
-
-
-def _sight(beacon: BeaconSpec, x: float, y: float, yaw: float) -> Sight:
-    dx, dy = beacon.at[0] - x, beacon.at[1] - y
-    distance = hypot(dx, dy)
-    return Sight(wrap(atan2(dy, dx) - yaw), distance, atan2(beacon.foot_radius, distance))
+    seen = []
+    for beacon in beacons:
+        bx, by = beacon.at
+        dx, dy = bx - x, by - y
+        distance = hypot(dx, dy)
+        seen.append(Sight(wrap(atan2(dy, dx) - yaw), distance, atan2(beacon.foot_radius, distance)))
+    return seen
 
 
 def match(azimuth: float, seen: Sequence[Sight]) -> int:
@@ -38,6 +38,6 @@ def match(azimuth: float, seen: Sequence[Sight]) -> int:
     Azimuth and sights are in one frame. It is judged by geometry alone, so that a detector's wrong identity
     shows. Of two in line it is the nearer one, which hides the other.
     """
-    offsets = [abs(wrap(azimuth - sight.azimuth)) for sight in seen]
+    offsets = [abs(remainder(azimuth - sight.azimuth, tau)) for sight in seen]
     hit = [k for k, sight in enumerate(seen) if offsets[k] <= sight.half_width]
     return min(hit, key=lambda k: (round(offsets[k] / _IN_LINE), seen[k].distance), default=SPURIOUS)

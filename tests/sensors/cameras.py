@@ -14,7 +14,7 @@ from hilbed.effects import Effects
 from hilbed.rng import stream
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.camera import Camera, CameraSpec, open_eye
-from hilbed.sensors.eye import Eye
+from hilbed.sensors.eye import LocalEye
 from hilbed.types import Nanos, Pose, Reading, Snapshot, Transfer, Truth
 from hilbed.vision.seams import Detection, Image
 
@@ -87,7 +87,7 @@ class Bench:
         spec = CameraSpec.model_validate(block)
         self.notes, self.effects, self.cost = Notes(), Effects([1.0, 1.0]), Cost()
         self.ideal = Ideal(spec, beacons)
-        ideal = Eye(spec.mount, beacons, self.ideal, self.ideal, self.cost)
+        ideal = LocalEye(spec.mount, beacons, self.ideal, self.ideal, self.cost)
         eye = open_eye(spec, beacons, self.cost) if rendered else ideal
         self.camera = Camera(spec, eye, stream(seed, "camera"), self.effects, self.notes)
 

@@ -1,0 +1,167 @@
+"""An eye in a process of its own: it renders and detects while the physics goes on."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import socket
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from io import BufferedRWPair
+from mmap import mmap
+from subprocess import DEVNULL, Popen, TimeoutExpired
+from typing import TYPE_CHECKING, Any
+from weakref import finalize
+
+import numpy as np
+
+from hilbed.cost import Cost, perf_counter
+from hilbed.scene import BeaconSpec
+from hilbed.sensors.eye import Glimpse, Ticket
+from hilbed.types import HilbedError, Pose
+from hilbed.vision.seams import Image
+
+if TYPE_CHECKING:
+    from hilbed.sensors.camera import CameraSpec
+
+CHILD = "hilbed.sensors.remote_child"
+PATIENCE = 60.0
+_LAST_WORDS = 5.0  # s for a process whose end of the line is gone
+
+
+class EyeLost(HilbedError):
+    """The camera's own process could not be started, has ended or does not answer."""
+
+
+class RemoteEye:
+    """Asks a child process for frames: requests and findings over a socket, the image in shared memory.
+
+    patience: s that the child may take to start or to make a frame. Raises ScenarioError where the renderer
+    does not work, EyeLost (also from a look and its ticket) where the child fails. What the child says on
+    standard output or error is lost; it ends with the socket, so also when this process is killed.
+    """
+
+    def __init__(
+        self, spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, patience: float = PATIENCE
+    ) -> None:
+        self.beacons, self.cost = tuple(beacons), cost
+        self._ready = self._asked = False
+        try:
+            self._process, self._socket, memory = _start(spec.height * spec.width * 3)
+        except OSError as error:
+            raise EyeLost(f"the camera's own process cannot be started: {error.strerror}") from error
+        self._socket.settimeout(patience)
+        self._line = self._socket.makefile("rwb")
+        self._socket.close()  # in name: it stays open as long as the file
+        self._finalize = finalize(self, _end, self._process, self._line)
+        self._image: Image = np.frombuffer(memory, np.uint8).reshape(spec.height, spec.width, 3)
+        self._send((spec, self.beacons))
+        if spec.renderer == "egl":
+            self._meet()  # one that does not work is an error of the scenario: found before it is run
+
+    @property
+    def pid(self) -> int:
+        """The child's process number."""
+        return self._process.pid
+
+    def look(self, pose: Pose, pan: float) -> Ticket:
+        """Has a frame exposed from the robot's pose with the camera turned by `pan` (rad, robot's frame)."""
+        if self._asked:
+            raise RuntimeError("the frame before has not been taken yet")
+        self._meet()
+        start = perf_counter()
+        self._send((pose, pan))
+        self._asked = True
+        self.cost.vision += perf_counter() - start
+        return self._take
+
+    def close(self) -> None:
+        """Ends the child."""
+        self._finalize()
+
+    def _meet(self) -> None:
+        """Waits until the child has its renderer."""
+        if not self._ready:
+            self._wait()
+            self._receive()
+            self._ready = True
+
+    def _take(self) -> Glimpse:
+        self._wait()
+        start = perf_counter()
+        findings, render, vision = self._receive()
+        glimpse = Glimpse(self._image.copy(), findings)
+        self._asked = False
+        self.cost.render += render
+        self.cost.vision += vision + perf_counter() - start
+        return glimpse
+
+    def _send(self, message: object) -> None:
+        try:
+            pickle.dump(message, self._line)
+            self._line.flush()
+        except (OSError, ValueError) as error:
+            raise self._lost() from error
+
+    def _wait(self) -> None:
+        try:
+            self._line.peek(1)
+        except TimeoutError as error:
+            self.close()
+            patience = self._socket.gettimeout()
+            raise EyeLost(f"the camera's own process has not answered for {patience:g} s") from error
+        except (OSError, ValueError) as error:
+            raise self._lost() from error
+
+    def _receive(self) -> Any:
+        try:
+            message = pickle.load(self._line)
+        except (EOFError, OSError, ValueError, pickle.UnpicklingError) as error:
+            raise self._lost() from error
+        if isinstance(message, HilbedError):
+            self.close()
+            raise message
+        return message
+
+    def _lost(self) -> EyeLost:
+        try:
+            status = self._process.wait(_LAST_WORDS)
+        except TimeoutExpired:
+            self.close()
+            return EyeLost("the camera's own process does not answer any more")
+        return EyeLost(f"the camera's own process has ended with {status}")
+
+
+def _start(size: int) -> tuple[Popen[bytes], socket.socket, mmap]:
+    """Returns a new child, this end of the line to it and the memory (bytes) that both see.
+
+    It finds modules where this process does, and Ctrl-C does not hit it.
+    """
+    path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
+    memory = os.memfd_create("hilbed-frame")
+    ours, theirs = socket.socketpair()
+    try:
+        os.truncate(memory, size)
+        shared = mmap(memory, 0)
+        child = Popen(
+            [sys.executable, "-P", "-m", CHILD, str(theirs.fileno()), str(memory)],
+            env={**os.environ, "PYTHONPATH": path},
+            pass_fds=(theirs.fileno(), memory),
+            process_group=0,
+            stdin=DEVNULL,
+            stdout=DEVNULL,
+            stderr=DEVNULL,
+        )
+        return child, ours, shared
+    finally:
+        theirs.close()
+        os.close(memory)
+
+
+def _end(child: Popen[bytes], line: BufferedRWPair) -> None:
+    """Ends a child in whatever state it is; it holds nothing that needs to be put in order."""
+    child.kill()
+    child.wait()
+    with suppress(OSError):  # a request that was never sent
+        line.close()

@@ -1,0 +1,87 @@
+"""What runs behind a remote eye: `python -m hilbed.sensors.remote_child SOCKET MEMORY`, descriptors both."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import socket
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from io import BufferedRWPair
+from mmap import mmap
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hilbed.cost import Cost
+from hilbed.sensors.camera import open_eye
+from hilbed.sensors.remote import EyeLost
+from hilbed.types import HilbedError
+from hilbed.vision.seams import Image
+
+_PROCESSOR = 36  # of the words after the name in /proc/PID/stat: where it ran last
+
+
+def requests(line: BufferedRWPair) -> Iterator[Any]:
+    """Yields what the bench asks for until it has gone."""
+    with suppress(EOFError, OSError):
+        while True:
+            yield pickle.load(line)
+
+
+def answers(asked: Iterator[Any], shared: Image) -> Iterator[object]:
+    """Yields an answer to each request; an error is an answer, too, and the last one."""
+    try:
+        yield from frames(asked, shared)
+    except HilbedError as error:
+        yield error
+    except Exception as error:
+        yield EyeLost(f"the camera's own process has failed: {error!r}")
+
+
+def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
+    """Yields None when the eye is ready; then, with each image in `shared`, findings and seconds it took.
+
+    asked: first spec and beacons, then pose and pan of each frame.
+    """
+    spec, beacons = next(asked)
+    cost, processors = Cost(), os.sched_getaffinity(0)
+    eye = open_eye(spec, beacons, cost)
+    yield None
+    for pose, pan in asked:
+        step_aside(processors)
+        render, vision = cost.render, cost.vision
+        image, findings = eye.look(pose, pan)()
+        np.copyto(shared.reshape(image.shape), image)
+        yield findings, cost.render - render, cost.vision - vision
+
+
+def step_aside(processors: set[int]) -> None:
+    """Keeps this process off the one of its processors that the bench runs on, if there is another.
+
+    Some schedulers wake a process where the one that wakes it runs, even if another processor is idle; then
+    a frame would stop the physics for as long as it takes.
+    """
+    with suppress(OSError):  # the bench has gone, or /proc is not there: then things stay as they are
+        status = Path(f"/proc/{os.getppid()}/stat").read_text()
+        others = processors - {int(status.rpartition(")")[2].split()[_PROCESSOR])}
+        if others and others != os.sched_getaffinity(0):
+            os.sched_setaffinity(0, others)
+
+
+def main() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the bench decides when it is over
+    descriptor, memory = map(int, sys.argv[1:])
+    line = socket.socket(fileno=descriptor).makefile("rwb")
+    shared = np.frombuffer(mmap(memory, 0), np.uint8)
+    with suppress(OSError):  # the bench has gone
+        for answer in answers(requests(line), shared):
+            pickle.dump(answer, line)
+            line.flush()
+
+
+if __name__ == "__main__":
+    main()
