@@ -41,8 +41,12 @@ class Journal:
         self._ticks: list[Mapping[str, Array]] = []
 
     def ticks(self, rows: Mapping[str, Array]) -> None:
-        """Takes the rows of the plant's tick log that are new, each (n,), for the logs; at any pace."""
-        self._ticks.append(rows)
+        """Takes the rows of the plant's tick log that are new, each (n,), for the logs; at any pace.
+
+        A plant without drives has none.
+        """
+        if rows:
+            self._ticks.append(rows)
 
     def record(self, cycle: Cycle) -> None:
         """Keeps a cycle and, twice a second, hands on all that was kept and noted.
