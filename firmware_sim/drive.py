@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from firmware_sim.axis import Axis
 from firmware_sim.dictionary import ObjectDictionary
 from firmware_sim.errors import Errors
@@ -13,8 +15,8 @@ class Drive:
     """The firmware of one wheel: passive, without threads and without a clock of its own.
 
     The owner calls `tick` every millisecond and `on_frame` for every frame on the bus, and after each
-    takes the frames to send out of `outbox`. Power comes with the first tick, which sends the boot-up
-    message. node: 1 to 127.
+    takes the frames to send out of `outbox`, which stays the same list. Power comes with the first tick,
+    which sends the boot-up message. node: 1 to 127.
     """
 
     def __init__(self, node: int) -> None:
@@ -26,10 +28,8 @@ class Drive:
         self._node = Node(node, dictionary, errors, self._axis)
         self._pending = errors.pending
         self.outbox: list[Frame] = self._node.outbox
-
-    def on_frame(self, t: int, frame: AnyFrame) -> None:
+        self.on_frame: Callable[[int, AnyFrame], None] = self._node.receive
         """Takes a frame off the bus at t (ns); whatever is in it, nothing is raised."""
-        self._node.receive(t, frame)
 
     def tick(self, t: int, counts: int, current: int, supply: int) -> int:
         """Runs the control period at t (ns) and returns the duty in Q15, −32767 … 32767.

@@ -99,11 +99,6 @@ class Axis:
         self.position = position
         return ((position - before + 0x80000000 & 0xFFFFFFFF) - 0x80000000) * self.radians_per_count
 
-    @property
-    def speed(self) -> float:
-        """Measured rad/s at the wheel, NaN until the first PDO."""
-        return float(self.values[VELOCITY] / self._velocity)
-
     def signals(self) -> DriveSignals:
         """Returns the drive as the controller sees it now."""
         values = self.values

@@ -20,7 +20,7 @@ from hilbed.can.sdo import download_frame
 from hilbed.can.specs import BusSpec
 from hilbed.clock import MILLISECOND, nanos, seconds
 from hilbed.ports import Bus, Robot
-from hilbed.types import BusError, Command, Diverged, DriveSignals, Nanos, Odometry
+from hilbed.types import BusError, Command, Diverged, Nanos, Odometry
 
 
 class CanBase:
@@ -119,12 +119,12 @@ class CanBase:
 
     def _odometry(self, t: Nanos) -> Odometry:
         distance = turn = 0.0
-        axes = self._axes
+        axes, robot = self._axes, self._robot
         if self._syncs and all(axis.fresh == self._syncs for axis in axes):
-            distance, turn = self._robot.travel([axis.turned() for axis in axes])
+            distance, turn = robot.travel([axis.turned() for axis in axes])
             self._sampled = self._sync
-        signals: dict[str, DriveSignals] = {axis.node.name: axis.signals() for axis in axes}
-        rates = self._robot.travel([signal.speed_measured for signal in signals.values()])
+        signals = {axis.node.name: axis.signals() for axis in axes}
+        rates = robot.travel([signal.speed_measured for signal in signals.values()])
         if isfinite(rates[0]):  # all drives have spoken
             self._rates = rates
         v, w = self._rates

@@ -1,8 +1,7 @@
 """How many bits a CAN frame takes on the wire: header, data, CRC-15 and the stuff bits between them.
 
-Bosch CAN 2.0 A/B. What the header leaves behind depends on few values and is cached; then it goes a byte at a
-time. The CRC is linear, so that it is the exclusive or of what header and each byte add to it, by how far
-they are from the end. The stuff bits come from a machine whose state is level and length of the last run.
+Bosch CAN 2.0 A/B. What the header leaves behind depends on few values and is cached; data and CRC go through
+tables a byte at a time. The stuffing is a machine whose state is level and length of the last run.
 """
 
 from __future__ import annotations
@@ -18,21 +17,17 @@ INTERFRAME_BITS = 3
 _TRAILER_BITS = 10  # CRC delimiter, acknowledge slot and delimiter, end of frame: never stuffed
 _CRC_BITS = 15
 _CRC_POLYNOMIAL = 0x4599
-_MOST_BYTES = 8
 
-Shares: TypeAlias = tuple[tuple[int, ...], ...]
 Row: TypeAlias = "list[tuple[Row, int]]"
 """A state of the stuffing: for each value of the next 8 bits the state after them and the stuff bits added;
 at index 256 + value the same for 7 bits (the CRC has 15)."""
 
 
-def crc15(data: bytes, crc: int = 0) -> int:
-    """Returns CRC-15/CAN of whole bytes (leading zero bits do not change it)."""
-    for byte in data:
-        crc ^= byte << 7
-        for _ in range(8):
-            crc = (crc << 1) ^ (_CRC_POLYNOMIAL if crc & 0x4000 else 0)
-            crc &= 0x7FFF
+def _crc_entry(byte: int) -> int:
+    crc = byte << 7
+    for _ in range(8):
+        crc = (crc << 1) ^ (_CRC_POLYNOMIAL if crc & 0x4000 else 0)
+        crc &= 0x7FFF
     return crc
 
 
@@ -64,27 +59,24 @@ def _stuff_rows() -> tuple[Row, ...]:
     return rows
 
 
-def _crc_shares() -> Shares:
-    """Returns what a byte with 0, 1, … 7 bytes behind it adds to the CRC, by its value."""
-    shares = [tuple(crc15(bytes((byte,))) for byte in range(256))]
-    while len(shares) < _MOST_BYTES:
-        shares.append(tuple(crc15(b"\0", crc) for crc in shares[-1]))
-    return tuple(shares)
-
-
+_CRC = tuple(map(_crc_entry, range(256)))
 _ROWS = _stuff_rows()
-_SHARES = _crc_shares()
-_SHARES_OF = tuple(_SHARES[:length][::-1] for length in range(_MOST_BYTES + 1))  # by number of data bytes
+
+
+def crc15(data: bytes, crc: int = 0) -> int:
+    """Returns CRC-15/CAN of whole bytes (leading zero bits do not change it)."""
+    for byte in data:
+        crc = _CRC[crc >> 7 ^ byte] ^ (crc << 8 & 0x7FFF)
+    return crc
 
 
 @lru_cache(maxsize=4096)
-def _header(identifier: int, length: int, extended: bool, remote: bool) -> tuple[int, int, Row, Shares]:
-    """Returns what is known before the data, and the table of each data byte.
+def _header(identifier: int, length: int, extended: bool, remote: bool) -> tuple[int, int, Row]:
+    """Returns what the bits up to the data length code leave behind.
 
-    Bits of the frame without what data and CRC add by stuffing; the CRC if all data were zero; the state of
-    the stuffing.
+    Bits of the frame without those that stuffing of data and CRC will add, CRC, state of the stuffing.
     """
-    if not 0 <= identifier < (1 << 29 if extended else 1 << 11) or length > _MOST_BYTES:
+    if not 0 <= identifier < (1 << 29 if extended else 1 << 11) or length > 8:
         raise BusError(f"no CAN frame: identifier {identifier:#x}, {length} bytes")
     if extended:
         base, low = identifier >> 18, identifier & 0x3FFFF
@@ -92,9 +84,8 @@ def _header(identifier: int, length: int, extended: bool, remote: bool) -> tuple
     else:
         bits, width = ((identifier << 1) | remote) << 6 | length, 19
     state, stuffed = _stuff_bits(0, bits, width - 1)  # the state after the start bit, a single dominant one
-    sent = 0 if remote else length  # a remote frame only names a length
-    crc = crc15(bits.to_bytes(5, "big") + bytes(sent))
-    return width + stuffed + 8 * sent + _CRC_BITS + _TRAILER_BITS, crc, _ROWS[state], _SHARES_OF[sent]
+    rest = _CRC_BITS + _TRAILER_BITS + (0 if remote else 8 * length)
+    return width + stuffed + rest, crc15(bits.to_bytes(5, "big")), _ROWS[state]
 
 
 def frame_bits(frame: Frame) -> int:
@@ -103,10 +94,11 @@ def frame_bits(frame: Frame) -> int:
     A remote frame's data gives its data length code only. Raises BusError where no such frame can be.
     """
     identifier, data, extended, remote = frame
-    bits, crc, row, shares = _header(identifier, len(data), extended, remote)
-    for byte, share in zip(data, shares):  # noqa: B905  (a remote frame's data are not sent)
-        crc ^= share[byte]
-        row, stuffed = row[byte]
-        bits += stuffed
+    bits, crc, row = _header(identifier, len(data), extended, remote)
+    if not remote:
+        for byte in data:
+            crc = _CRC[crc >> 7 ^ byte] ^ (crc << 8 & 0x7FFF)
+            row, stuffed = row[byte]
+            bits += stuffed
     row, stuffed = row[256 | crc >> 8]
     return bits + stuffed + row[crc & 0xFF][1]

@@ -21,11 +21,13 @@ class BusSpec(Spec):
     """The simulated wire: bit rate in bit/s, one of CiA's; what happens when a drive goes silent.
 
     silent: hold (go on with what was heard last), quick_stop (of all drives) or fail (the run);
-    silent_after: s without a PDO of a drive.
+    silent_after: s without a PDO of a drive; channel: name by which python-can buses of this process may
+    join, can.Bus(interface="hilbed", channel=…), null for none.
     """
 
     kind: Literal["wire"] = "wire"
     bitrate: int = 500_000
+    channel: str | None = None
     silent: Literal["hold", "quick_stop", "fail"] = "fail"
     silent_after: Positive = 0.1
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Sequence
-from typing import Protocol, TypeAlias
+from typing import Protocol, TypeAlias, cast
 
 import numpy as np
 
@@ -74,11 +74,12 @@ Attach: TypeAlias = Callable[[str, Callable[[Nanos, Frame], None]], Bus]
 class Axis:
     """One drive from its node on the bus to its shaft."""
 
-    __slots__ = ("encoder", "firmware", "name", "port", "train")
+    __slots__ = ("_outbox", "encoder", "firmware", "name", "port", "train")
 
     def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
         self.name = name
         self.firmware = Drive(node)
+        self._outbox = cast("list[Frame]", self.firmware.outbox)  # frames with the same fields
         self.train = train
         self.encoder = encoder
         self.port = attach(name, self.on_frame)
@@ -86,15 +87,14 @@ class Axis:
     def on_frame(self, t: Nanos, frame: Frame) -> None:
         """Hands a frame to the firmware and sends what it answers."""
         self.firmware.on_frame(t, frame)
-        self.flush(t)
+        if self._outbox:
+            self.flush(t)
 
     def flush(self, t: Nanos) -> None:
         """Sends what the firmware has put into its outbox."""
-        outbox = self.firmware.outbox
-        if outbox:
-            for identifier, data, extended, remote in outbox:
-                self.port.send(t, Frame(identifier, data, extended, remote))
-            outbox.clear()
+        for frame in self._outbox:
+            self.port.send(t, frame)
+        self._outbox.clear()
 
 
 class SimulatedPlant:
