@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 
 from hilbed.record.folder import RunFolder
-from hilbed.runner import perform
+from hilbed.runner import perform, processors
 from hilbed.scenario.load import load
 
 STARTS = 5
@@ -23,7 +23,7 @@ def bench(scenario: str) -> int:
     """
     loaded = load(scenario, ["record=all"])
     with TemporaryDirectory(prefix="hilbed-bench-") as folder:
-        outcome = perform(loaded, RunFolder(Path(folder) / "run"))
+        outcome = perform(loaded, RunFolder(Path(folder) / "run"), separate=processors() > 1)
     verdict = outcome.verdict
     cost, wall, simulated = verdict["cost"], verdict["wall_time"], verdict["sim_time"]
     print(f"{loaded.name}: {simulated:g} s simulated in {wall:.2f} s, {simulated / wall:.1f} x real time")

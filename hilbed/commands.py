@@ -12,7 +12,7 @@ from hilbed.clock import seconds
 from hilbed.console import Stop, end_progress, progress, stop_on_signal
 from hilbed.record.folder import RunFolder
 from hilbed.report import write_report
-from hilbed.runner import Outcome, Watch, perform
+from hilbed.runner import Outcome, Watch, perform, processors
 from hilbed.scenario import bundled
 from hilbed.scenario.load import Loaded, load, version_warnings
 from hilbed.types import Cycle, HilbedError
@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"warning: {warning}", file=sys.stderr)
     folder = RunFolder(options.out or _default_folder(loaded), options.force)
     with stop_on_signal() as stop:
-        outcome = perform(loaded, folder, _watch(loaded, stop))
+        outcome = perform(loaded, folder, _watch(loaded, stop), separate=processors() > 1)
     if outcome.trace:
         print(f"{outcome.trace}This is a mistake in hilbed, not in the scenario.", file=sys.stderr)
     report = _report(folder.path, loaded)

@@ -10,10 +10,13 @@ from hilbed.scenario.load import Loaded
 __all__ = ["BOOT", "Bench", "build"]
 
 
-def build(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
-    """Returns the bench of a scenario; raises ScenarioError for what only building it can find."""
+def build(loaded: Loaded, witness: Witness, cost: Cost, separate: bool = False) -> Bench:
+    """Returns the bench of a scenario; raises ScenarioError for what only building it can find.
+
+    separate: cameras render in processes of their own, to the same hash.
+    """
     from hilbed.build.recorded import recorded
     from hilbed.build.simulated import simulated
 
     builders = {"bullet": simulated, "recorded": recorded}
-    return builders[loaded.scenario.plant.kind](loaded, witness, cost)
+    return builders[loaded.scenario.plant.kind](loaded, witness, cost, separate)

@@ -18,7 +18,7 @@ from hilbed.scene import BeaconSpec
 from hilbed.types import ScenarioError
 
 
-def recorded(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
+def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool) -> Bench:
     """Returns a bench whose odometry, readings and truth come from a file; raises ScenarioError."""
     scenario, spec = loaded.scenario, loaded.scenario.plant
     assert isinstance(spec, RecordedSpec)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 
 from hilbed import rng
 from hilbed.build.bench import BOOT, Bench
 from hilbed.build.minds import Surroundings, make_controller, make_estimator
 from hilbed.can.base import CanBase
+from hilbed.can.channels import lend
 from hilbed.can.master import Master
 from hilbed.can.node import Node
 from hilbed.can.specs import resolve
@@ -26,19 +28,20 @@ from hilbed.plant.simulated import Axis, SimulatedPlant
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.plant.supply import Supply
 from hilbed.plant.urdf import Body, diffdrive, moved_inertia
-from hilbed.ports import Reference, Sensor, Witness
+from hilbed.ports import Reference, Witness
 from hilbed.robots import ROBOTS
 from hilbed.scenario import files
 from hilbed.scenario.load import Loaded
 from hilbed.scenario.model import Scenario
 from hilbed.sensors.camera import Camera, open_eye
+from hilbed.sensors.eye import Eye
 from hilbed.types import Nanos, Pose
 
 STANDSTILL: Nanos = 500 * MILLISECOND
 """How long the bench goes on after the last cycle, so that the drives come to rest."""
 
 
-def simulated(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
+def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> Bench:
     """Returns the whole bench in simulated time; raises ScenarioError where URDF or renderer refuse."""
     scenario, spec = loaded.scenario, loaded.scenario.plant
     assert isinstance(spec, SimulatedSpec)
@@ -49,11 +52,15 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
 
     effects = Effects([spec.friction] * len(robot.drives))
     schedule = _schedule(scenario, robot.drives, effects)
-    sensors = tuple(_sensors(scenario, spec, effects, witness, cost))
+    eyes = [open_eye(sensor, spec.beacons, cost, separate) for sensor in scenario.sensors.values()]
+    sensors = _sensors(scenario, eyes, effects, witness)
     body = _body(loaded)
     inertia = reflected_inertia(spec.motor, spec.gear)
     world = BulletWorld(body, spec, start, inertia, cost)
     wire = Wire(scenario.bus.bitrate, witness.transfer)
+    guests = ExitStack()
+    if scenario.bus.channel is not None:
+        guests.enter_context(lend(scenario.bus.channel, wire))
     port = wire.attach("controller")
     axes = [_axis(node, spec, moved_inertia(body, inertia), wire) for node in nodes]
     plant = SimulatedPlant(axes, world, Supply(spec.supply), schedule, wire, sensors, tick, cost)
@@ -79,13 +86,21 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost) -> Bench:
     def stop(t: Nanos) -> None:
         base.stop(t)
         plant.advance(t, t + STANDSTILL)
+        for sensor in sensors:
+            sensor.flush()
+
+    def close() -> None:
+        guests.close()
+        world.close()
+        for sensor in sensors:
+            sensor.close()
 
     def events() -> list[str]:
         return [f"t = {seconds(event.t):.3f} s: {event.drive}: {event.text}" for event in base.ears.events]
 
     return Bench(
         rig, start, reference, robot.drives, {"azimuth": 1} if sensors else {}, tuple(spec.beacons),
-        tick, boot, stop, plant.ticks, events, world.close,
+        tick, boot, stop, plant.ticks, events, close,
     )  # fmt: skip
 
 
@@ -124,11 +139,12 @@ def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> 
 
 
 def _sensors(
-    scenario: Scenario, spec: SimulatedSpec, effects: Effects, witness: Witness, cost: Cost
-) -> Iterator[Sensor]:
-    for name, sensor in scenario.sensors.items():
-        eye = open_eye(sensor, spec.beacons, cost)
-        yield Camera(sensor, eye, rng.stream(scenario.seed, f"sensors.{name}"), effects, witness)
+    scenario: Scenario, eyes: Sequence[Eye], effects: Effects, witness: Witness
+) -> tuple[Camera, ...]:
+    return tuple(
+        Camera(spec, eye, rng.stream(scenario.seed, f"sensors.{name}"), effects, witness)
+        for (name, spec), eye in zip(scenario.sensors.items(), eyes, strict=True)
+    )
 
 
 def _body(loaded: Loaded) -> Body:
