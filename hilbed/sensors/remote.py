@@ -154,6 +154,9 @@ def _start(size: int) -> tuple[Popen[bytes], socket.socket, mmap]:
             stderr=DEVNULL,
         )
         return child, ours, shared
+    except OSError:
+        ours.close()
+        raise
     finally:
         theirs.close()
         os.close(memory)

@@ -56,12 +56,12 @@ def _stretches(image: Image) -> tuple[Indices, Image]:
 
     Each row begins a stretch. Only one pixel of each needs to be judged by its colour.
     """
-    pixels = cv2.cvtColor(image, cv2.COLOR_RGB2RGBA).view(np.uint32)[:, :, 0]
-    begins = np.empty(pixels.shape, np.bool_)
-    begins[:, 0] = True
-    np.not_equal(pixels[:, 1:], pixels[:, :-1], out=begins[:, 1:])
-    begin = begins.ravel().nonzero()[0]
-    return begin, pixels.ravel()[begin].view(np.uint8).reshape(1, -1, 4)
+    pixels = cv2.cvtColor(image, cv2.COLOR_RGB2RGBA).view(np.uint32).ravel()
+    begins = np.empty(pixels.size, np.bool_)
+    np.not_equal(pixels[1:], pixels[:-1], out=begins[1:])
+    begins[:: image.shape[1]] = True
+    begin = begins.nonzero()[0]
+    return begin, pixels[begin].view(np.uint8).reshape(1, -1, 4)
 
 
 def gather(runs: Runs) -> tuple[Runs, Indices]:

@@ -207,6 +207,16 @@ def test_an_interrupt_does_not_reach_the_child() -> None:
         assert os.getpgid(remote.pid) != os.getpgid(0)
 
 
+def test_the_child_leaves_the_processor_of_the_bench_where_there_is_another() -> None:
+    ours = os.sched_getaffinity(0)
+    with eye() as remote:
+        remote.look(ORIGIN, 0.0)()
+        theirs = os.sched_getaffinity(remote.pid)
+    assert theirs <= ours
+    assert len(theirs) == max(1, len(ours) - 1)
+    assert os.sched_getaffinity(0) == ours
+
+
 SCRIPT = """
 import sys
 from hilbed.cost import Cost
