@@ -6,10 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hilbed.angles import wrap
-from hilbed.estimation.motion import motion
+from hilbed.estimation.motion import predicted
 from hilbed.estimation.specs import DeadReckoningSpec
-from hilbed.types import Array, Estimate, Nanos, Odometry, Pose, Reading
+from hilbed.types import Estimate, Nanos, Odometry, Pose, Reading
 
 FARTHEST = 1e3  # m or rad in one increment: beyond it the odometer is broken, not fast
 
@@ -41,14 +40,9 @@ class DeadReckoning:
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:  # noqa: ARG002
         """Returns the pose at `t`: odometry up to its stamp, then its speeds."""
         if usable(odometry):
-            self._mean, self._covariance = self._moved(odometry.distance, odometry.turn)
+            step = odometry.distance, odometry.turn
+            self._mean, self._covariance = predicted(self._mean, self._covariance, step, self._model)
         else:
             self.ignored += 1
-        mean, covariance = self._moved(*extrapolation(t - odometry.t, odometry))
-        return Estimate(t, mean, covariance)
-
-    def _moved(self, distance: float, turn: float) -> tuple[Array, Array]:
-        change, F, Q = motion(float(self._mean[2]), distance, turn, self._model)
-        mean = self._mean + change
-        mean[2] = wrap(mean[2])
-        return mean, F @ self._covariance @ F.T + Q
+        ahead = extrapolation(t - odometry.t, odometry)
+        return Estimate(t, *predicted(self._mean, self._covariance, ahead, self._model))

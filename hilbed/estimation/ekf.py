@@ -12,6 +12,7 @@ from hilbed.estimation.association import nearest
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.filter import PoseFilter
 from hilbed.estimation.measurement import MODELS, Point
+from hilbed.estimation.motion import predicted
 from hilbed.estimation.specs import EkfSpec
 from hilbed.estimation.timeline import Measurement, Node, Timeline
 from hilbed.types import Estimate, Innovation, Nanos, Odometry, Pose, Reading
@@ -102,11 +103,14 @@ class Ekf:
         last = self._timeline.last
         if t <= last.t:
             return last
+        step = extrapolation(t - last.t, odometry)
+        early = [measurement for measurement in self._waiting if measurement.t <= t]
+        if not early:
+            return Node(t, *predicted(last.mean, last.covariance, step, self._odometry))
         ahead = Timeline(last, self._memory)
-        ahead.extend(t, *extrapolation(t - last.t, odometry))
-        for measurement in self._waiting:
-            if measurement.t <= t:
-                ahead.insert(measurement)
+        ahead.extend(t, *step)
+        for measurement in early:
+            ahead.insert(measurement)
         self._replay(ahead, 1)
         return ahead.last
 

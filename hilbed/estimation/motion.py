@@ -68,3 +68,13 @@ def motion(yaw: float, distance: float, turn: float, model: OdometryModel) -> Mo
         )
     )
     return Motion(np.array((dx, dy, turn)), F, Q)
+
+
+def predicted(
+    mean: Array, covariance: Array, step: tuple[float, float], model: OdometryModel
+) -> tuple[Array, Array]:
+    """Returns the belief (3,), (3, 3) after a step of odometry (m, rad); the one it came from stays."""
+    change, F, Q = motion(float(mean[2]), *step, model)
+    moved = mean + change
+    moved[2] = wrap(float(moved[2]))
+    return moved, F @ covariance @ F.T + Q
