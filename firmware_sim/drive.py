@@ -8,7 +8,7 @@ from firmware_sim.axis import Axis
 from firmware_sim.dictionary import ObjectDictionary
 from firmware_sim.errors import Errors
 from firmware_sim.frame import AnyFrame, Frame
-from firmware_sim.node import Node
+from firmware_sim.node import Accept, Node
 
 
 class Drive:
@@ -16,16 +16,18 @@ class Drive:
 
     The owner calls `tick` every millisecond and `on_frame` for every frame on the bus, and after each
     takes the frames to send out of `outbox`, which stays the same list. Power comes with the first tick,
-    which sends the boot-up message. node: 1 to 127.
+    which sends the boot-up message. node: 1 to 127; accept: told the identifiers that the drive heeds, from
+    power-on and whenever they change, for the acceptance filter of a CAN controller. Extended frames are
+    never heeded.
     """
 
-    def __init__(self, node: int) -> None:
+    def __init__(self, node: int, accept: Accept | None = None) -> None:
         if not 1 <= node <= 127:
             raise ValueError(f"a node's number is 1 to 127, not {node}")
         dictionary = ObjectDictionary(node)
         errors = Errors(dictionary.values)
         self._axis = Axis(dictionary.values, errors)
-        self._node = Node(node, dictionary, errors, self._axis)
+        self._node = Node(node, dictionary, errors, self._axis, accept)
         self._pending = errors.pending
         self.outbox: list[Frame] = self._node.outbox
         self.on_frame: Callable[[int, AnyFrame], None] = self._node.receive

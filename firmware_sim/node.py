@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
+from typing import TypeAlias
 
 from firmware_sim.application import Application
 from firmware_sim.dictionary import ObjectDictionary
@@ -18,16 +19,26 @@ from firmware_sim.process_data import ProcessData
 from firmware_sim.sdo import SdoServer
 from firmware_sim.watchdog import NEVER, Watchdog
 
+Accept: TypeAlias = Callable[[Collection[int]], None]
+
 
 class Node:
     """One CANopen node; the frames that it sends are appended to `outbox`.
 
     due: when `poll` has to be called at the latest (ns); malformed: frames for this node that were
-    dropped for their length.
+    dropped for their length; accept: told the identifiers that the node heeds when they change.
     """
 
-    def __init__(self, number: int, dictionary: ObjectDictionary, errors: Errors, app: Application) -> None:
+    def __init__(
+        self,
+        number: int,
+        dictionary: ObjectDictionary,
+        errors: Errors,
+        app: Application,
+        accept: Accept | None = None,
+    ) -> None:
         self.number = number
+        self._accept = accept
         self.outbox: list[Frame] = []
         self.due = -NEVER
         self.malformed = 0
@@ -109,6 +120,8 @@ class Node:
         if self.state in TALKING:
             self._services[0x600 + self.number] = self._on_sdo
         self._services[0x000] = self._on_nmt
+        if self._accept is not None:
+            self._accept(frozenset((*self._services, *self._remotes)))
 
     def _enter(self, t: int, state: NmtState) -> None:
         self.state = state

@@ -8,7 +8,7 @@ real bus) are served in the order of queueing.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from heapq import heappop, heappush
 from typing import TypeAlias
 
@@ -22,6 +22,7 @@ Listener = Callable[[Nanos, Frame], None]
 
 _LONG_AGO: Nanos = -(1 << 62)
 _NEVER: Nanos = 1 << 62
+_EXTENDED = 1 << 29  # stands for every extended identifier where it is looked up who hears
 
 
 _Queued: TypeAlias = "tuple[int, int, Nanos, Frame, int, Port]"
@@ -36,13 +37,16 @@ class Port:
     """A node's CAN controller: `send` and `recv` of ports.Bus.
 
     It has as many transmit mailboxes as it takes and offers the one with the lowest identifier first
-    (equal identifiers in order of queueing); it does not hear what it sends itself.
+    (equal identifiers in order of queueing); it does not hear what it sends itself. number: of the port on
+    its wire.
     """
 
-    __slots__ = ("_inbox", "_wire", "deliver", "name")
+    __slots__ = ("_inbox", "_wire", "accepted", "deliver", "name", "number")
 
-    def __init__(self, wire: Wire, name: str, on_frame: Listener | None) -> None:
+    def __init__(self, wire: Wire, name: str, number: int, on_frame: Listener | None) -> None:
         self.name = name
+        self.number = number
+        self.accepted: Collection[int] | None = None
         self.deliver = on_frame or self._store
         self._wire = wire
         self._inbox: list[Received] = []
@@ -59,6 +63,11 @@ class Port:
             return [received for received in arrived if received.t <= t]
         self._inbox = []
         return arrived
+
+    def accept(self, identifiers: Collection[int] | None) -> None:
+        """Sets the acceptance filter: standard frames with other identifiers are not heard; None: all are."""
+        self.accepted = identifiers
+        self._wire.refilter()
 
     def _store(self, t: Nanos, frame: Frame) -> None:
         self._inbox.append(_new(Received, (t, frame)))
@@ -79,7 +88,8 @@ class Wire:
         self._bit: Nanos = SECOND // bitrate
         self._on_transfer = on_transfer
         self._ports: list[Port] = []
-        self._hearers: dict[Port, tuple[Listener, ...]] = {}
+        self._attached = 0
+        self._hearers: dict[int, tuple[Listener, ...]] = {}  # by sender's number and identifier; made lazily
         self._ready: list[_Queued] = []
         self._waiting: list[tuple[Nanos, _Queued]] = []  # queued ahead of time
         self._flight: tuple[Nanos, Transfer, Port] | None = None  # when it ends, and what ends then
@@ -91,15 +101,20 @@ class Wire:
     def attach(self, name: str, on_frame: Listener | None = None) -> Port:
         """Adds a node. With `on_frame` it is called as the last bit of a frame arrives and may send at once;
         without it frames wait in the port until `recv`."""
-        port = Port(self, name, on_frame)
+        port = Port(self, name, self._attached, on_frame)
+        self._attached += 1
         self._ports.append(port)
-        self._connect()
+        self.refilter()
         return port
 
     def detach(self, port: Port) -> None:
         """Takes a node off; what it has queued is still sent."""
         self._ports.remove(port)
-        self._connect()
+        self.refilter()
+
+    def refilter(self) -> None:
+        """Forgets who hears what: a node has come or gone, or has changed its filter."""
+        self._hearers.clear()
 
     def queue(self, t: Nanos, frame: Frame, sender: Port) -> None:
         """Queues a frame of `sender` at `t`, or now if `t` is past."""
@@ -137,7 +152,11 @@ class Wire:
         if self._on_transfer is not None:
             self._on_transfer(transfer)
         frame = transfer.frame
-        for deliver in self._hearers.get(sender) or self._others(sender):
+        address = sender.number << 30 | (_EXTENDED if frame.extended else frame.id)
+        hearers = self._hearers.get(address)
+        if hearers is None:
+            hearers = self._hearers[address] = self._find(sender, frame)
+        for deliver in hearers:
             deliver(end, frame)
         return True
 
@@ -184,8 +203,10 @@ class Wire:
         else:
             self._due = self._waiting[0][0] if self._waiting else _NEVER
 
-    def _others(self, sender: Port) -> tuple[Listener, ...]:
-        return tuple(port.deliver for port in self._ports if port is not sender)
-
-    def _connect(self) -> None:
-        self._hearers = {port: self._others(port) for port in self._ports}
+    def _find(self, sender: Port, frame: Frame) -> tuple[Listener, ...]:
+        """Returns the listeners that a frame of this sender reaches."""
+        return tuple(
+            port.deliver
+            for port in self._ports
+            if port is not sender and (port.accepted is None or frame.extended or frame.id in port.accepted)
+        )

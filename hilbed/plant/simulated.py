@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Protocol, TypeAlias, cast
 
 import numpy as np
@@ -67,7 +67,13 @@ class Supply(Protocol):
     def voltage(self, current: float, drop: float) -> float: ...
 
 
-Attach: TypeAlias = Callable[[str, Callable[[Nanos, Frame], None]], Bus]
+class Port(Bus, Protocol):
+    """A node's CAN controller, whose acceptance filter the firmware sets."""
+
+    def accept(self, identifiers: Collection[int]) -> None: ...
+
+
+Attach: TypeAlias = Callable[[str, Callable[[Nanos, Frame], None]], Port]
 """Puts a node on the bus, by name and by what it does with a frame."""
 
 
@@ -78,11 +84,11 @@ class Axis:
 
     def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
         self.name = name
-        self.firmware = Drive(node)
+        self.port = attach(name, self.on_frame)
+        self.firmware = Drive(node, self.port.accept)
         self._outbox = cast("list[Frame]", self.firmware.outbox)  # frames with the same fields
         self.train = train
         self.encoder = encoder
-        self.port = attach(name, self.on_frame)
 
     def on_frame(self, t: Nanos, frame: Frame) -> None:
         """Hands a frame to the firmware and sends what it answers."""
@@ -145,14 +151,18 @@ class SimulatedPlant:
         """Takes the state at t = 0 into the log and the sensors' first samples."""
         self._schedule.apply(0, self._world)
         self._note([0.0] * len(self._axes), [0.0] * len(self._axes))
-        self._sample(0)
+        for sensor in self._sensors:
+            if sensor.due <= 0:
+                sensor.sample(self.truth())
 
     def advance(self, start: Nanos, end: Nanos) -> None:
         """Moves everything from `start` to `end`; Diverged if the world does not stand that."""
         for t in range(start, end, self._tick):
             self._step(t)
-            self._now = t + self._tick
-            self._sample(self._now)
+            self._now = now = t + self._tick
+            for sensor in self._sensors:
+                if sensor.due <= now:
+                    sensor.sample(self.truth())
 
     def _step(self, t: Nanos) -> None:
         cost, world, schedule = self._cost, self._world, self._schedule
@@ -185,11 +195,6 @@ class SimulatedPlant:
             self._axes, world.speeds, world.slips, loads, torques, duties, strict=True
         ):
             extend((speed, axis.train.current, slip, load, torque, axis.firmware.speed_ref, duty))
-
-    def _sample(self, t: Nanos) -> None:
-        for sensor in self._sensors:
-            if sensor.due <= t:
-                sensor.sample(self.truth())
 
     def ticks(self, first: int = 0) -> dict[str, Array]:
         """Returns the tick log from row `first` on: "tick/t" and "tick/drive/NAME/…", each (M,)."""

@@ -185,6 +185,33 @@ def test_load_is_the_share_of_bits_with_interframe_space() -> None:
     assert load(after, after) == 0.0
 
 
+@settings(deadline=None)
+@given(jobs_of_three, st.frozensets(st.sampled_from([0, 1, 0x80, 0x181, 0x7FF])))
+def test_a_filter_lets_its_identifiers_and_extended_frames_through(
+    jobs: list[Job], accepted: frozenset[int]
+) -> None:
+    wire = Wire(500_000)
+    ports = [wire.attach(name) for name in "abc"]
+    ports[1].accept(accepted)
+    for t, who, frame in jobs:
+        ports[who].send(t, frame)
+    wire.advance(60_000_000)
+    heard = [received.frame for received in ports[1].recv(60_000_000)]
+    others = [frame for _, who, frame in jobs if who != 1]
+    assert sorted(heard) == sorted(f for f in others if f.extended or f.id in accepted)
+    assert len(ports[0].recv(60_000_000)) == sum(who != 0 for _, who, _ in jobs)
+
+
+def test_a_filter_can_change_between_frames() -> None:
+    wire = Wire(500_000)
+    a, b = wire.attach("a"), wire.attach("b")
+    for accepted in ({1}, {2}, None):
+        b.accept(accepted)
+        a.send(wire.now, Frame(1))
+        wire.advance(wire.now + 1_000_000)
+    assert len(b.recv(wire.now)) == 2
+
+
 def test_a_node_that_left_hears_nothing_but_its_frames_still_go() -> None:
     wire = Wire(500_000)
     a, b = wire.attach("a"), wire.attach("b")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import random
 import sys
+from collections.abc import Collection
 from pathlib import Path
 
 import pytest
@@ -134,3 +135,22 @@ def test_the_firmware_imports_nothing_but_the_standard_library() -> None:
             for name in names:
                 top = name.split(".")[0]
                 assert top == "firmware_sim" or top in sys.stdlib_module_names, (path, name)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32))
+def test_the_filter_that_it_asks_for_drops_nothing_that_it_would_heed(seed: int) -> None:
+    source = random.Random(seed)
+    filters: list[Collection[int]] = []
+    filtered, plain = Drive(NODE, filters.append), Drive(NODE)
+    for t in range(300):
+        duties = [drive.tick(t * MILLISECOND, 0, 0, 96) for drive in (filtered, plain)]
+        assert duties[0] == duties[1]
+        frame = anything(source)
+        plain.on_frame(t * MILLISECOND, frame)
+        if frame.id in filters[-1] and not frame.extended:
+            filtered.on_frame(t * MILLISECOND, frame)
+        assert filtered.outbox == plain.outbox
+        assert filtered.malformed == plain.malformed
+        for drive in (filtered, plain):
+            drive.outbox.clear()
