@@ -18,7 +18,6 @@ from hilbed.build import BOOT, Bench, build
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.record.columns import Columns
-from hilbed.record.disk import RecordError
 from hilbed.record.folder import RunFolder
 from hilbed.record.hashing import BusDigest, run_hash, signals_hash
 from hilbed.record.journal import Journal
@@ -26,7 +25,7 @@ from hilbed.record.notes import Notes
 from hilbed.record.row import Sink
 from hilbed.scenario import yaml12
 from hilbed.scenario.load import Loaded, resolved
-from hilbed.types import BusError, Cycle, Diverged, Nanos
+from hilbed.types import BusError, Cycle, HilbedError, Nanos
 from hilbed.versions import versions
 
 PASSED, FAILED, INTERRUPTED, BROKEN, BUS = 0, 1, 2, 3, 7
@@ -74,10 +73,10 @@ class _Ending:
         """Does a step of the run; an error ends the run with its own status instead of a traceback."""
         try:
             step()
-        except (Diverged, RecordError) as error:
-            self.set(BROKEN, str(error))
         except BusError as error:
             self.set(BUS, str(error))
+        except HilbedError as error:  # diverged, disk full, a camera's process lost
+            self.set(BROKEN, str(error))
         except KeyboardInterrupt:
             self.set(INTERRUPTED, f"SIGINT at t = {seconds(self.last):.3f} s")
         except Exception as error:

@@ -85,15 +85,17 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> B
 
     def stop(t: Nanos) -> None:
         base.stop(t)
-        plant.advance(t, t + STANDSTILL)
-        for sensor in sensors:
-            sensor.flush()
+        try:
+            plant.advance(t, t + STANDSTILL)
+        finally:
+            for sensor in sensors:
+                sensor.flush()
 
     def close() -> None:
-        guests.close()
-        world.close()
         for sensor in sensors:
             sensor.close()
+        guests.close()
+        world.close()
 
     def events() -> list[str]:
         return [f"t = {seconds(event.t):.3f} s: {event.drive}: {event.text}" for event in base.ears.events]
