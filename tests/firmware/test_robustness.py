@@ -154,3 +154,20 @@ def test_the_filter_that_it_asks_for_drops_nothing_that_it_would_heed(seed: int)
         assert filtered.malformed == plain.malformed
         for drive in (filtered, plain):
             drive.outbox.clear()
+
+
+def test_the_filter_follows_state_and_identifiers() -> None:
+    filters: list[Collection[int]] = []
+    drive = Drive(NODE, filters.append)
+    drive.tick(0, 0, 0, 96)
+    requests, tpdo, rpdo = 0x600 + NODE, 0x180 + NODE, 0x200 + NODE
+    assert filters[-1] == {0x000, requests}
+    drive.on_frame(0, Frame(0x000, bytes((1, NODE))))
+    assert {0x000, 0x080, requests, rpdo} <= set(filters[-1])
+    assert tpdo not in filters[-1]
+    for off in (1 << 31, 0):  # bit 30 cleared: the PDO may be asked for by a remote frame
+        cob = (off | tpdo).to_bytes(4, "little")
+        drive.on_frame(0, Frame(requests, b"\x23\x00\x18\x01" + cob))
+    assert tpdo in filters[-1]
+    drive.on_frame(0, Frame(0x000, bytes((2, NODE))))
+    assert filters[-1] == {0x000}
