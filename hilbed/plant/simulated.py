@@ -16,7 +16,7 @@ from hilbed.ports import Bus, Sensor
 from hilbed.types import Array, Frame, Nanos, Pose, Truth
 
 SIGNALS = ("speed", "current", "slip", "load_torque", "torque", "speed_ref", "duty")
-"""What the tick log holds of each drive, units as in signals.npz."""
+"""What a row of the tick log holds, each of all drives in their order; units as in signals.npz."""
 
 
 class World(Protocol):
@@ -150,7 +150,9 @@ class SimulatedPlant:
     def start(self) -> None:
         """Takes the state at t = 0 into the log and the sensors' first samples."""
         self._schedule.apply(0, self._world)
-        self._note([0.0] * len(self._axes), [0.0] * len(self._axes))
+        nothing = [0.0] * len(self._axes)
+        loads = self._schedule.effects.load_torque
+        self._log.extend((*self._world.speeds, *nothing, *nothing, *loads, *nothing, *nothing, *nothing))
         for sensor in self._sensors:
             if sensor.due <= 0:
                 sensor.sample(self.truth())
@@ -171,30 +173,29 @@ class SimulatedPlant:
         schedule.apply(t, world)
         volts = self._supply.voltage(self._drawn, effects.supply_drop)
         volts_pin = pins.supply(volts)
-        torques, duties, drawn = [], [], 0.0
+        torques, duties, currents, references, drawn = [], [], [], [], 0.0
         for axis, angle, speed in zip(self._axes, world.angles, world.speeds, strict=True):
             firmware, train = axis.firmware, axis.train
-            q15 = firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
+            duty = pins.duty(
+                firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
+            )
             if firmware.outbox:
                 axis.flush(t)
-            duty = pins.duty(q15)
             torques.append(train.step(duty, firmware.bridge_enabled, volts, speed))
             duties.append(duty)
+            currents.append(train.current)
+            references.append(firmware.speed_ref)
             drawn += train.supply_current
         self._drawn = drawn
         driven = perf_counter()
-        cost.drives += driven - begun
         self._wire.advance(t + self._tick)
-        cost.bus += perf_counter() - driven
+        carried = perf_counter()
+        cost.drives += driven - begun
+        cost.bus += carried - driven
         world.step(torques, self._coulomb, effects)
-        self._note(torques, duties)
-
-    def _note(self, torques: Sequence[float], duties: Sequence[float]) -> None:
-        world, loads, extend = self._world, self._schedule.effects.load_torque, self._log.extend
-        for axis, speed, slip, load, torque, duty in zip(
-            self._axes, world.speeds, world.slips, loads, torques, duties, strict=True
-        ):
-            extend((speed, axis.train.current, slip, load, torque, axis.firmware.speed_ref, duty))
+        self._log.extend(
+            (*world.speeds, *currents, *world.slips, *effects.load_torque, *torques, *references, *duties)
+        )
 
     def ticks(self, first: int = 0) -> dict[str, Array]:
         """Returns the tick log from row `first` on: "tick/t" and "tick/drive/NAME/…", each (M,)."""
@@ -204,5 +205,5 @@ class SimulatedPlant:
         columns: dict[str, Array] = {"tick/t": stamps}
         for k, axis in enumerate(self._axes):
             for j, signal in enumerate(SIGNALS):
-                columns[f"tick/drive/{axis.name}/{signal}"] = rows[:, k * len(SIGNALS) + j].copy()
+                columns[f"tick/drive/{axis.name}/{signal}"] = rows[:, j * len(self._axes) + k].copy()
         return columns
