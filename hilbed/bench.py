@@ -5,9 +5,11 @@ from __future__ import annotations
 import resource
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
+from typing import Any
 
 from hilbed.record.folder import RunFolder
 from hilbed.runner import perform, processors
@@ -19,23 +21,39 @@ STARTS = 5
 def bench(scenario: str) -> int:
     """Runs a scenario with all recorders on, prints its cost and returns the run's status.
 
-    floor / total = (cost.physics + cost.render) / wall_time, both from the same run.
+    floor / total = (cost.physics + cost.render) / wall_time, both from the same run. On two processors or
+    more the camera renders and detects in a process of its own, beside the rest.
     """
     loaded = load(scenario, ["record=all"])
+    beside = processors() > 1
     with TemporaryDirectory(prefix="hilbed-bench-") as folder:
-        outcome = perform(loaded, RunFolder(Path(folder) / "run"), separate=processors() > 1)
+        outcome = perform(loaded, RunFolder(Path(folder) / "run"), separate=beside)
+    memory, child = _peak(resource.RUSAGE_SELF), _peak(resource.RUSAGE_CHILDREN)
     verdict = outcome.verdict
-    cost, wall, simulated = verdict["cost"], verdict["wall_time"], verdict["sim_time"]
-    print(f"{loaded.name}: {simulated:g} s simulated in {wall:.2f} s, {simulated / wall:.1f} x real time")
-    print(f"{'part':12}{'s':>9}{'ms a simulated s':>20}{'of the total':>14}")
-    parts = {**cost, "other": wall - sum(cost.values())}
-    for name, spent in parts.items():
-        print(f"{name:12}{spent:9.3f}{1e3 * spent / simulated:20.2f}{spent / wall:14.1%}")
-    floor = cost["physics"] + cost["render"]
-    print(f"floor (physics + render) / total: {floor:.2f} s / {wall:.2f} s = {floor / wall:.3f}")
-    print(f"peak memory: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
+    print(_table(loaded.name, verdict, beside))
+    print(f"peak memory: {memory:.0f} MB, of the camera's process {child:.0f} MB")
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
     return outcome.status
+
+
+def _peak(who: int) -> float:
+    return resource.getrusage(who).ru_maxrss / 1024
+
+
+def _table(name: str, verdict: Mapping[str, Any], beside: bool) -> str:
+    cost, wall, simulated = verdict["cost"], verdict["wall_time"], verdict["sim_time"]
+    apart = ("render", "vision") if beside else ()
+    rest = wall - sum(spent for part, spent in cost.items() if part not in apart)
+    lines = [
+        f"{name}: {simulated:g} s simulated in {wall:.2f} s, {simulated / wall:.1f} x real time",
+        f"{'part':12}{'s':>9}{'ms a simulated s':>20}{'of the total':>14}",
+    ]
+    for part, spent in {**cost, "the rest": rest}.items():
+        where = "  beside the rest" if part in apart else ""
+        lines.append(f"{part:12}{spent:9.3f}{1e3 * spent / simulated:20.2f}{spent / wall:14.1%}{where}")
+    floor = cost["physics"] + cost["render"]
+    lines.append(f"floor (physics + render) / total: {floor:.2f} s / {wall:.2f} s = {floor / wall:.3f}")
+    return "\n".join(lines)
 
 
 def help_time() -> float:
