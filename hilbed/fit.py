@@ -43,8 +43,12 @@ def fit(run: Path, fraction: float = 0.5) -> str:
     """
     if not 0 < fraction <= 1:
         raise ScenarioError(f"fit: the fraction of the run must lie in (0, 1], given {fraction:g}")
-    signals = first_part(_signals(run), fraction)
-    found = fit_signals(signals, _beacons(run))
+    whole = _signals(run)
+    if "beacons" not in whole:
+        raise ScenarioError(f"fit: {run} is a run without beacons, there are no readings to fit")
+    beacons: list[Point] = [(x, y) for x, y in whole["beacons"].tolist()]
+    signals = first_part(whole, fraction)
+    found = fit_signals(signals, beacons)
     told = ", ".join(f"{count} {kind} readings" for kind, (*_, count) in found.sensor.kinds.items())
     return "\n".join(
         (
@@ -62,19 +66,6 @@ def _signals(run: Path) -> dict[str, Any]:
             return {name: file[name] for name in file.files}
     except (OSError, ValueError, EOFError) as error:
         raise ScenarioError(f"fit: {run} holds no readable signals.npz ({error})") from None
-
-
-def _beacons(run: Path) -> list[Point]:
-    from hilbed.plant.recorded_spec import RecordedSpec
-    from hilbed.plant.recording import load as load_recording
-    from hilbed.scenario.files import resolve
-    from hilbed.scenario.load import load
-
-    loaded = load(str(run / "scenario.yaml"))
-    plant = loaded.scenario.plant
-    if isinstance(plant, RecordedSpec):
-        return [(x, y) for x, y in load_recording(resolve(plant.file, loaded.folder)).landmarks.tolist()]
-    return [beacon.at for beacon in plant.beacons]
 
 
 def first_part(signals: Signals, fraction: float) -> dict[str, Any]:

@@ -105,6 +105,8 @@ def perform(
     rows = ending.last // bench.tick + 1  # the log goes on while the drives stop
     ticks = {name: column[:rows] for name, column in bench.ticks(0).items()}
     signals = columns.finish(ticks, bench.tick)
+    if bench.beacons:
+        signals["beacons"] = np.array([beacon.at for beacon in bench.beacons])
     content = _judge(loaded, signals, bus.digest(), cost, ending)
     if folder is not None:
         ending.attempt(lambda: _write(folder, loaded, signals, content))

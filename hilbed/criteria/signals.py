@@ -34,11 +34,17 @@ class Signals(dict[str, Column]):
         return self["tick/t" if f"tick/drive/{name}/speed" in self else "t"]
 
 
+TIMELESS = "beacons"
+
+
 def window(signals: Mapping[str, Column], start: float, end: float) -> Signals:
-    """Returns the rows of every signal whose own time lies in [start, end] (s)."""
+    """Returns the rows of every signal whose own time lies in [start, end] (s); beacons have no time."""
     kept: dict[str, Column] = {}
     cut = Signals()
     for name, column in signals.items():
+        if name == TIMELESS:
+            cut[name] = column
+            continue
         time = _time_of(name, signals)
         if time not in kept:
             slack = 1e-9  # a limit of 0.3 s means the row at 3 · 0.1 s, too

@@ -35,6 +35,9 @@ class Span(NamedTuple):
     area: tuple[float, ...] = ()
 
 
+NO_COLOUR = "none"
+
+
 class Beacon(NamedTuple):
     """A beacon on the map: place (m) and the name of its colour."""
 
@@ -74,7 +77,7 @@ def read_run(folder: Path) -> Run:
     signals = _parsed(folder / SIGNALS, lambda: _signals(folder / SIGNALS))
     shots = _parsed(folder / FRAMES, lambda: _shots(folder / FRAMES))
     spans = _parsed(folder / SCENARIO, lambda: _spans(scenario))
-    beacons = _parsed(folder / SCENARIO, lambda: _beacons(scenario))
+    beacons = _parsed(folder / SCENARIO, lambda: _beacons(scenario, signals))
     return Run(folder, text, verdict, signals, spans, beacons, shots)
 
 
@@ -142,9 +145,10 @@ def _span(letter: str, block: Mapping[str, Any]) -> Span:
     return Span(letter, " · ".join(words), start, inf if length is None else start + float(length), area)
 
 
-def _beacons(scenario: Mapping[str, Any]) -> tuple[Beacon, ...]:
+def _beacons(scenario: Mapping[str, Any], signals: Signals) -> tuple[Beacon, ...]:
+    """Returns where the beacons stood, in the colours that the scenario gives them, if it does."""
     blocks = (scenario.get("plant") or {}).get("beacons") or []
-    return tuple(
-        Beacon(float(block["at"][0]), float(block["at"][1]), str(block.get("colour", "red")))
-        for block in blocks
-    )
+    colours = [str(block.get("colour", "red")) for block in blocks]
+    places = signals["beacons"].tolist() if "beacons" in signals else []
+    colours += [NO_COLOUR] * (len(places) - len(colours))
+    return tuple(Beacon(x, y, colour) for (x, y), colour in zip(places, colours, strict=False))

@@ -54,7 +54,7 @@ DRIVES = ("left", "right", "third")
 
 def beacon_colour(name: str, brightness: float = 1.0) -> str:
     """Returns the colour of a beacon, darker where bright yellow would not be seen on white."""
-    parts = SCENE_COLOURS.get(name, (1.0, 0.0, 0.0))
+    parts = SCENE_COLOURS.get(name, (0.6, 0.6, 0.6))
     return "#" + "".join(f"{round(255 * brightness * part):02x}" for part in parts)
 
 
