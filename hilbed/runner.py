@@ -107,7 +107,18 @@ def perform(
     signals = columns.finish(ticks, bench.tick)
     if bench.beacons:
         signals["beacons"] = np.array([beacon.at for beacon in bench.beacons])
-    content = _judge(loaded, signals, bus.digest(), cost, ending)
+    account = verdict.Account(
+        scenario=loaded.name,
+        seed=loaded.scenario.seed,
+        reason=ending.reason,
+        sim_time=seconds(ending.last),
+        wall_time=ending.wall,
+        cost=cost.as_dict(),
+        hash=run_hash(signals, bus.digest()),
+        signals_hash=signals_hash(signals),
+        events=bench.events(),
+    )
+    content = verdict.conclude(account, signals, loaded.scenario.criteria)
     if folder is not None:
         ending.attempt(lambda: _write(folder, loaded, signals, content))
     return Outcome(_status(content, ending), content, ending.trace)
@@ -162,23 +173,6 @@ def _cycles(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, endin
         if asked is not None:
             ending.set(INTERRUPTED, f"{asked} at t = {seconds(cycle.t):.3f} s")
             return
-
-
-def _judge(
-    loaded: Loaded, signals: dict[str, np.ndarray[Any, Any]], bus: bytes, cost: Cost, ending: _Ending
-) -> dict[str, Any]:
-    scenario = loaded.scenario
-    account = verdict.Account(
-        loaded.name,
-        scenario.seed,
-        ending.reason,
-        seconds(ending.last),
-        ending.wall,
-        cost.as_dict(),
-        run_hash(signals, bus),
-        signals_hash(signals),
-    )
-    return verdict.conclude(account, signals, scenario.criteria)
 
 
 def _write(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf, isfinite
 from typing import Any, NamedTuple, TextIO
 
@@ -15,7 +15,8 @@ from hilbed.criteria.signals import Column
 class Account(NamedTuple):
     """What the runner knows of a run besides its signals.
 
-    reason: why it ended before its time, else empty; sim_time, wall_time, cost: s.
+    reason: why it ended before its time, else empty; sim_time, wall_time, cost: s; events: what the drives
+    did that they should not have.
     """
 
     scenario: str
@@ -26,6 +27,7 @@ class Account(NamedTuple):
     cost: Mapping[str, float]
     hash: str
     signals_hash: str
+    events: Sequence[str] = ()
 
 
 def conclude(
@@ -50,6 +52,7 @@ def conclude(
         "cost": {part: _finite(value) for part, value in account.cost.items()},
         "hash": account.hash,
         "signals_hash": account.signals_hash,
+        "events": list(account.events),
     }
 
 
@@ -68,6 +71,9 @@ def _entry(one: Judged) -> dict[str, Any]:
 def _finite(value: float) -> float | None:
     return float(value) if isfinite(value) else None
 
+
+MOST_EVENTS = 5
+"""As many are shown in a terminal."""
 
 _RED, _GREEN, _BOLD, _PLAIN = "\x1b[31m", "\x1b[32m", "\x1b[1m", "\x1b[0m"
 
@@ -105,4 +111,8 @@ def _summary(content: Mapping[str, Any], colour: bool) -> str:
     factor = content["real_time_factor"]
     speed = f", {factor:.1f} times real time" if factor else ""
     line = f"{content['scenario']} seed {content['seed']}: {word}, {content['sim_time']:g} s simulated{speed}"
-    return line + (f"\n{content['reason']}" if content["reason"] else "")
+    events = content["events"]
+    shown = [f"drive event: {event}" for event in events[:MOST_EVENTS]]
+    if len(events) > MOST_EVENTS:
+        shown.append(f"… and {len(events) - MOST_EVENTS} more drive events in verdict.json")
+    return "\n".join([line, *([content["reason"]] if content["reason"] else []), *shown])

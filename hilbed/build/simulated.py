@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from hilbed import rng
 from hilbed.build.bench import BOOT, Bench
@@ -75,35 +75,45 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> B
         cost,
     )
 
-    def pump(t: Nanos) -> Nanos:
-        plant.idle(t, t + tick)
-        return t + tick
+    hands = _Hands(Master(nodes, port, period), base, plant, sensors, tick)
+    guests.callback(world.close)
+    for sensor in sensors:
+        guests.callback(sensor.close)
+    kinds = {"azimuth": 1} if sensors else {}
+    return Bench(
+        rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
+        hands.boot, hands.stop, plant.ticks, hands.events, guests.close,
+    )  # fmt: skip
 
-    def boot() -> None:
-        Master(nodes, port, period).boot(pump, -BOOT, 0)
-        plant.start()
 
-    def stop(t: Nanos) -> None:
-        base.stop(t)
+@dataclass(frozen=True)
+class _Hands:
+    """What is done with a simulated bench before its first cycle and after its last; tick in ns."""
+
+    master: Master
+    base: CanBase
+    plant: SimulatedPlant
+    sensors: tuple[Camera, ...]
+    tick: Nanos
+
+    def boot(self) -> None:
+        self.master.boot(self._pump, -BOOT, 0)
+        self.plant.start()
+
+    def _pump(self, t: Nanos) -> Nanos:
+        self.plant.idle(t, t + self.tick)
+        return t + self.tick
+
+    def stop(self, t: Nanos) -> None:
+        self.base.stop(t)
         try:
-            plant.advance(t, t + STANDSTILL)
+            self.plant.advance(t, t + STANDSTILL)
         finally:
-            for sensor in sensors:
+            for sensor in self.sensors:
                 sensor.flush()
 
-    def close() -> None:
-        for sensor in sensors:
-            sensor.close()
-        guests.close()
-        world.close()
-
-    def events() -> list[str]:
-        return [f"t = {seconds(event.t):.3f} s: {event.drive}: {event.text}" for event in base.ears.events]
-
-    return Bench(
-        rig, start, reference, robot.drives, {"azimuth": 1} if sensors else {}, tuple(spec.beacons),
-        tick, boot, stop, plant.ticks, events, close,
-    )  # fmt: skip
+    def events(self) -> list[str]:
+        return [f"t = {seconds(e.t):.3f} s: {e.drive}: {e.text}" for e in self.base.ears.events]
 
 
 def start_of(scenario: Scenario, reference: Reference | None) -> Pose:

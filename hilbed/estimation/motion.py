@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hilbed.angles import wrap
-from hilbed.types import Array, Pose
+from hilbed.types import Array
 
 
 class OdometryModel(NamedTuple):
@@ -33,15 +33,6 @@ class Motion(NamedTuple):
     change: Array
     F: Array
     Q: Array
-
-
-def integrate(pose: Pose, distance: float, turn: float) -> Pose:
-    """Moves a pose by an odometry increment (m along the arc, rad).
-
-    The chord is taken at ψ + dψ/2 with the arc's length: Slimane et al. (2014), eq. (4) with its T.
-    """
-    heading = pose.yaw + turn / 2
-    return Pose(pose.x + distance * cos(heading), pose.y + distance * sin(heading), wrap(pose.yaw + turn))
 
 
 def motion(yaw: float, distance: float, turn: float, model: OdometryModel) -> Motion:

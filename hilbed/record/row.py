@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import cos, nan, sin
+from math import nan
 from typing import NamedTuple, Protocol
 
-from hilbed.angles import wrap
+from hilbed.poses import moved
 from hilbed.types import Array, Cycle, Nanos, Odometry, Pose, Reading, Snapshot, Transfer
 
 UNKNOWN = Pose(nan, nan, nan)
@@ -81,10 +81,3 @@ class DeadReckoning:
         self._pose = moved(self._pose, odometry.distance, odometry.turn)
         late = (t - odometry.t) * 1e-9
         return moved(self._pose, odometry.v * late, odometry.w * late)
-
-
-def moved(pose: Pose, distance: float, turn: float) -> Pose:
-    """Moves a pose by an arc of `distance` (m) that turns it by `turn` (rad); second order in the turn."""
-    middle = pose.yaw + 0.5 * turn
-    x, y = pose.x + distance * cos(middle), pose.y + distance * sin(middle)
-    return Pose(x, y, wrap(pose.yaw + turn))

@@ -42,7 +42,7 @@ class Step(NamedTuple):
     readings: list[Reading]
 
 
-def moved(pose: Pose, way: float, turn: float, direction: float) -> Pose:
+def exact_arc(pose: Pose, way: float, turn: float, direction: float) -> Pose:
     """An exact arc, written on its own: chord 2R sin(turn/2)."""
     chord = way if abs(turn) < 1e-12 else 2 * way / turn * sin(turn / 2)
     a = pose.yaw + turn / 2 + direction
@@ -69,7 +69,7 @@ def experiment(
         swing = (
             rng.normal(0, 1) * (errors.heading_noise**2 * abs(way) + errors.turn_noise**2 * abs(turn)) ** 0.5
         )
-        pose = moved(
+        pose = exact_arc(
             pose, way * errors.distance_scale + slip, turn * errors.turn_scale + swing, errors.direction
         )
         history.append(pose)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from hilbed.estimation.calibration import increments
-from hilbed.estimation.motion import integrate
 from hilbed.estimation.specs import EkfSpec
 from hilbed.fit import Fitted, first_part, fit_signals, lines
+from hilbed.poses import moved
 from hilbed.scenario import yaml12
 from hilbed.types import Pose, ScenarioError
 from tests.estimation.experiment import BEACONS, PERIOD, START, Errors, Step, experiment
@@ -36,7 +36,7 @@ def signals(steps: list[Step]) -> dict[str, np.ndarray]:
     """The run as signals.npz has it."""
     pose, reckoned = START, []
     for step in steps:
-        pose = integrate(pose, step.odometry.distance, step.odometry.turn)
+        pose = moved(pose, step.odometry.distance, step.odometry.turn)
         reckoned.append(pose)
     table = {
         "t": np.array([step.t for step in steps]) * 1e-9,
@@ -106,7 +106,7 @@ def test_increments_undo_integration() -> None:
     ways = [(0.1, 0.3), (0.2, -0.5), (-0.1, 0.2), (0.0, 3.0), (0.3, 2.9)]
     poses = [Pose(1.0, 2.0, pi - 0.1)]
     for way, turn in ways:
-        poses.append(integrate(poses[-1], way, turn))
+        poses.append(moved(poses[-1], way, turn))
     told = increments(np.array(poses))
     np.testing.assert_allclose(told[:, [0, 2]], ways, atol=1e-12)
     np.testing.assert_allclose(told[:, 1], 0, atol=1e-12)

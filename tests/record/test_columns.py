@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hilbed.poses import moved
 from hilbed.record.columns import Columns
-from hilbed.record.row import DeadReckoning, moved
+from hilbed.record.row import DeadReckoning
 from hilbed.types import Innovation, Odometry, Pose, Reading
 from tests.record.runs import FIELDS, PERIOD, cycle, play, ticks
 

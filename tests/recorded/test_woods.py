@@ -11,13 +11,13 @@ import pytest
 
 from hilbed.estimation.consistency import nees, pose_error
 from hilbed.estimation.ekf import Ekf
-from hilbed.estimation.motion import integrate
 from hilbed.estimation.specs import EkfSpec
 from hilbed.fit import first_part, fit_signals
 from hilbed.plant.recorded import Recorded
 from hilbed.plant.recorded_spec import RecordedSpec
 from hilbed.plant.recording import load
 from hilbed.plant.replay import RecordedBase, RecordedPlant, RecordedSensor
+from hilbed.poses import moved
 from hilbed.types import Array
 from tests.recorded.test_replay import Notes
 
@@ -46,7 +46,7 @@ def play(spec: EkfSpec, **recorded: Any) -> Run:
     pose, rows = part.start, []
     for t in part.times:
         odometry = base.read(t)
-        pose = integrate(pose, odometry.distance, odometry.turn)
+        pose = moved(pose, odometry.distance, odometry.turn)
         estimate = ekf.step(t, odometry, [r for sensor in sensors for r in sensor.read(t)])
         rows.append((plant.truth().pose, pose, estimate.mean, estimate.covariance))
         plant.advance(t, t + PERIOD)
