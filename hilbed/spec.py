@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+T = TypeVar("T")
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Fraction = Annotated[float, Field(ge=0, le=1)]
-Point = tuple[Finite, Finite]
+Listed = Annotated[T, Field(strict=False)]
+"""A tuple, which YAML writes as a list."""
+
+Point = Listed[tuple[Finite, Finite]]
+
+
+def _word(value: Any) -> Any:
+    return {"kind": value} if isinstance(value, str) else value
+
+
+Word = BeforeValidator(_word)
+"""On a block: a word is short for a block of that kind, `controller: open_loop`."""
 
 
 class Spec(BaseModel):
-    """One block of a scenario: unknown keys are errors, values are fixed once read."""
+    """One block of a scenario: unknown keys are errors, values are fixed once read.
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    Types are what they say: neither "1" nor true is a number.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)

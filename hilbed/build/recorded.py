@@ -15,7 +15,6 @@ from hilbed.ports import Witness
 from hilbed.scenario import files
 from hilbed.scenario.load import Loaded
 from hilbed.scene import BeaconSpec
-from hilbed.types import ScenarioError
 
 
 def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool) -> Bench:
@@ -23,10 +22,6 @@ def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool) -> Bench:
     scenario, spec = loaded.scenario, loaded.scenario.plant
     assert isinstance(spec, RecordedSpec)
     robot = Recorded(spec, load(files.resolve(spec.file, loaded.folder)))
-    if scenario.duration > robot.duration + scenario.period:
-        raise ScenarioError(
-            f"duration: {scenario.duration:g} s, {spec.file} has {robot.duration:g} s from its start"
-        )
     sensors = tuple(RecordedSensor(robot, kind, witness) for kind in spec.kinds())
     reference = None if scenario.reference is None else scenario.reference.build()
     period = nanos(scenario.period)

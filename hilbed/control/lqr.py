@@ -11,10 +11,11 @@ from pydantic import Field
 from hilbed.angles import wrap
 from hilbed.clock import seconds
 from hilbed.ports import Reference
-from hilbed.spec import Positive, Spec
+from hilbed.spec import Listed, Positive, Spec
 from hilbed.types import Array, Command, Diverged, Estimate, Nanos, Pose
 
 Row = tuple[float, float, float]
+Weight = Annotated[float, Field(ge=1e-4, le=1e4)]
 
 SLOWEST = 0.05  # m/s: an axle that stands cannot be steered aside, so gains are those of this speed
 GRID = 0.05  # m/s and rad/s: reference speeds are rounded to it before a gain is solved and kept
@@ -28,8 +29,8 @@ class LqrSpec(Spec):
     """
 
     kind: Literal["lqr"] = "lqr"
-    error: tuple[Positive, Positive, Positive] = (0.05, 0.05, 0.05)
-    effort: tuple[Positive, Positive] = (0.05, 0.05)
+    error: Listed[tuple[Weight, Weight, Weight]] = (0.05, 0.05, 0.05)
+    effort: Listed[tuple[Weight, Weight]] = (0.05, 0.05)
     max_speed: Positive = 1.0
     max_turn_rate: Annotated[float, Field(gt=0, le=20)] = 2.0
 

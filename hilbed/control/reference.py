@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from hilbed.angles import wrap
 from hilbed.control.arcs import Arc, Box, Path
 from hilbed.control.timetable import Timetable
-from hilbed.spec import Finite, Point, Positive, Spec
+from hilbed.spec import Finite, Listed, Point, Positive, Spec
 from hilbed.types import Nanos, Pose, ReferencePoint
 
 
@@ -55,7 +55,7 @@ class LineSpec(_Reference):
     """A line from a start (m, m, yaw rad) over a length (m); then the reference stands."""
 
     kind: Literal["line"]
-    start: tuple[Finite, Finite, Finite] = (0.0, 0.0, 0.0)
+    start: Listed[tuple[Finite, Finite, Finite]] = (0.0, 0.0, 0.0)
     length: Positive = 10.0
 
     def path(self) -> Path:
@@ -119,7 +119,7 @@ class WaypointsSpec(_Reference):
     """
 
     kind: Literal["waypoints"]
-    points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    points: Annotated[Listed[tuple[Point, ...]], Field(min_length=2)]
     corner_radius: Positive = 0.3
     closed: bool = False
 

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from hilbed.estimation.motion import OdometryModel
-from hilbed.spec import Finite, NonNegative, Point, Positive, Spec
+from hilbed.spec import Finite, Listed, NonNegative, Point, Positive, Spec
 
 SmallAngle = Annotated[float, Field(ge=-3.2, le=3.2, allow_inf_nan=False)]
 
@@ -61,7 +61,7 @@ class EkfSpec(Spec):
     """
 
     kind: Literal["ekf"] = "ekf"
-    initial_std: tuple[Positive, Positive, Positive] = (0.01, 0.01, 0.01)
+    initial_std: Listed[tuple[Positive, Positive, Positive]] = (0.01, 0.01, 0.01)
     odometry: OdometrySpec = OdometrySpec()
     azimuth: ReadingSpec = ReadingSpec()
     range: ReadingSpec = ReadingSpec()
@@ -76,7 +76,7 @@ class DeadReckoningSpec(Spec):
     """Odometry alone, with the doubt that grows on the way; initial_std: x m, y m, yaw rad."""
 
     kind: Literal["odometry"] = "odometry"
-    initial_std: tuple[Positive, Positive, Positive] = (0.01, 0.01, 0.01)
+    initial_std: Listed[tuple[Positive, Positive, Positive]] = (0.01, 0.01, 0.01)
     odometry: OdometrySpec = OdometrySpec()
 
 

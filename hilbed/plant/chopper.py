@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Protocol, TypeAlias
 from pydantic import Field
 
 from hilbed.plant.winding import reaches, relax, through_diodes
-from hilbed.spec import NonNegative, Positive, Spec
+from hilbed.spec import NonNegative, Positive, Spec, Word
 
 
 class Averaged(Spec):
@@ -39,7 +39,17 @@ class Switched(Spec):
     current_limit: Positive = 15.0
 
 
-Chopper = Annotated[Averaged | Switched, Field(discriminator="kind")]
+def periods(spec: Switched, dt: float) -> int:
+    """Returns how many PWM periods a tick (s) has; raises ValueError where chopper and tick do not fit."""
+    count = round(spec.frequency * dt)
+    if count < 1 or abs(count - spec.frequency * dt) > 1e-6:
+        raise ValueError(f"PWM frequency {spec.frequency:g} Hz is not a multiple of the tick's {1 / dt:g} Hz")
+    if 2.0 * spec.dead_time >= dt / count:
+        raise ValueError(f"dead_time {spec.dead_time:g} s: two of them fill the PWM period")
+    return count
+
+
+Chopper = Annotated[Averaged | Switched, Field(discriminator="kind"), Word]
 
 
 Tick: TypeAlias = tuple[float, float, float, float]

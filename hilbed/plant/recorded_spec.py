@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from hilbed.spec import Finite, NonNegative, Positive, Spec
+from hilbed.spec import Finite, Listed, NonNegative, Positive, Spec
 
 
 class RecordedSpec(Spec):
@@ -28,7 +28,7 @@ class RecordedSpec(Spec):
     azimuth_std: Positive | None = None
     range_std: Positive | None = None
     anonymous: bool = False
-    pose: tuple[Finite, Finite, Annotated[float, Field(ge=-3.2, le=3.2)]] | None = None
+    pose: Listed[tuple[Finite, Finite, Annotated[float, Field(ge=-3.2, le=3.2)]]] | None = None
 
     def kinds(self) -> list[str]:
         """Returns the kinds of readings that are used."""

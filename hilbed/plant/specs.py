@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pydantic import field_validator
+
 from hilbed.plant.bullet_spec import BulletSpec
 from hilbed.plant.chopper import Averaged, Chopper
 from hilbed.plant.encoder import EncoderSpec
@@ -9,6 +11,9 @@ from hilbed.plant.gear import GEARS, Gear
 from hilbed.plant.motor import MOTORS, Motor
 from hilbed.plant.supply import SupplySpec
 from hilbed.scene import BeaconSpec
+
+FIRMWARE_TICK = 0.001
+"""s; the control period that the loops in the drives' firmware are written for."""
 
 
 class SimulatedSpec(BulletSpec):
@@ -20,3 +25,10 @@ class SimulatedSpec(BulletSpec):
     encoder: EncoderSpec = EncoderSpec()
     supply: SupplySpec = SupplySpec()
     beacons: list[BeaconSpec] = []
+
+    @field_validator("tick")
+    @classmethod
+    def _firmware_can(cls, value: float) -> float:
+        if value != FIRMWARE_TICK:
+            raise ValueError(f"{value:g} s; the drives' firmware runs once a tick, at {FIRMWARE_TICK:g} s")
+        return value

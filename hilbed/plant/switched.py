@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from hilbed.plant.chopper import Switched, Tick, open_bridge
+from hilbed.plant.chopper import Switched, Tick, open_bridge, periods
 from hilbed.plant.winding import reaches, relax, through_diodes
-from hilbed.types import ScenarioError
 
 
 class SwitchedStage:
@@ -31,15 +30,9 @@ class SwitchedStage:
     )  # fmt: skip
 
     def __init__(self, spec: Switched, resistance: float, inductance: float, dt: float) -> None:
-        """Takes the winding's R (Ω) and L (H) and the tick (s); raises ScenarioError if they do not fit."""
-        self._periods = round(spec.frequency * dt)
-        if self._periods < 1 or abs(self._periods - spec.frequency * dt) > 1e-6:
-            raise ScenarioError(
-                f"PWM frequency {spec.frequency:g} Hz: not a multiple of the tick's {1 / dt:g} Hz"
-            )
+        """Takes the winding's R (Ω) and L (H) and the tick (s); raises ValueError if they do not fit."""
+        self._periods = periods(spec, dt)
         self._period = dt / self._periods
-        if 2.0 * spec.dead_time >= self._period:
-            raise ScenarioError(f"dead_time {spec.dead_time:g} s: two of them fill the PWM period")
         self._dead = spec.dead_time
         self._diode = spec.diode_drop
         self._dt = dt

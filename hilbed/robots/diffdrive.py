@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from hilbed.spec import Finite, Positive, Spec
+from hilbed.spec import Finite, Listed, Positive, Spec
 from hilbed.types import Command
 
 
@@ -19,7 +19,7 @@ class DiffDriveSpec(Spec):
     wheel_radius: Positive = 0.1
     track: Positive = 0.4
     urdf: str = "package:urdf/diffdrive.urdf"
-    start: tuple[Finite, Finite, Finite] | None = None
+    start: Listed[tuple[Finite, Finite, Finite]] | None = None
 
 
 class DiffDrive:

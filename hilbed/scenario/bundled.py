@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hilbed.scenario import yaml12
-from hilbed.scenario.problems import nearest
+from hilbed.scenario.problems import nearest, shorten
 from hilbed.types import ScenarioError
 
 FOLDER = Path(__file__).parent.parent / "scenarios"
@@ -27,11 +27,17 @@ def find(name: str) -> tuple[str, Path]:
     if name in names():
         return name, bundled
     path = Path(name)
-    if path.is_file():
-        return _short_name(path), path
+    try:
+        if path.is_file():
+            return _short_name(path), path
+        exists = bool(name) and path.exists()
+    except (OSError, ValueError) as error:  # no name that a file could have
+        raise ScenarioError(f"{shorten(name)}: {getattr(error, 'strerror', None) or error}") from None
+    if exists:
+        raise ScenarioError(f"{name} is not a file; a scenario is a YAML file or one of `hilbed list`")
     if path.suffix in (".yaml", ".yml"):
         raise ScenarioError(f"there is no file {name}")
-    raise ScenarioError(f"unknown scenario {name!r}{nearest(name, names())}")
+    raise ScenarioError(f"unknown scenario {shorten(name)}{nearest(name, names())}")
 
 
 def _short_name(path: Path) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -15,10 +16,16 @@ from hilbed.criteria import METRICS, CriterionSpec, metric_of
 from hilbed.disturbances import DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec, RecordedSpec, SimulatedSpec
+from hilbed.plant.chopper import Switched, periods
+from hilbed.plant.recorded import Recorded
+from hilbed.plant.recording import load
+from hilbed.plant.urdf import diffdrive
 from hilbed.robots import ROBOTS, RobotSpec
 from hilbed.scenario import files
 from hilbed.scenario.problems import Problem, nearest
 from hilbed.sensors import SensorSpec
+from hilbed.sensors.camera import names
+from hilbed.sensors.pan import make_pan
 from hilbed.types import ScenarioError
 
 Problems = Iterator[Problem]
@@ -36,7 +43,10 @@ def across(blocks: Mapping[str, Any], folder: Path) -> list[Problem]:
 
 
 def _periods(duration: float, period: float) -> Problems:
-    if nanos(duration) % nanos(period):
+    for name, given in (("duration", duration), ("period", period)):
+        if not nanos(given):
+            yield Problem((name,), f"{name}: {given:g} s is less than a nanosecond")
+    if nanos(period) and nanos(duration) % nanos(period):
         yield Problem(
             ("duration",), f"duration: {duration:g} s is not a multiple of the period, {period:g} s"
         )
@@ -54,6 +64,11 @@ def _ticks(period: float, plant: PlantSpec) -> Problems:
         latency = f"plant.encoder.latency: {plant.encoder.latency:g} s"
         text = f"{latency} is not a multiple of the tick, {plant.tick:g} s"
         yield Problem(("plant", "encoder", "latency"), text)
+    if isinstance(plant.chopper, Switched):
+        try:
+            periods(plant.chopper, plant.tick)
+        except ValueError as error:
+            yield Problem(("plant", "chopper"), f"plant.chopper: {error}")
 
 
 def _nodes(robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec, period: float) -> Problems:
@@ -106,6 +121,47 @@ def _files(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
             yield Problem(path, f"{'.'.join(path)}: {error}")
 
 
+def _body(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
+    """What a URDF lacks is told with the rest; a file that is not there, by `_files`."""
+    if isinstance(plant, SimulatedSpec):
+        with suppress(ScenarioError):
+            path = files.resolve(robot.urdf, folder)
+            try:
+                diffdrive(path, robot.wheel_radius, robot.track)
+            except ScenarioError as error:
+                yield Problem(("robot", "urdf"), f"robot.urdf: {error}")
+
+
+def _recording(plant: PlantSpec, duration: float, period: float, folder: Path) -> Problems:
+    """What a recorded robot's file holds, and for how long; a file that is not there is told by `_files`."""
+    if isinstance(plant, RecordedSpec):
+        with suppress(ScenarioError):
+            path = files.resolve(plant.file, folder)
+            try:
+                robot = Recorded(plant, load(path))
+            except ScenarioError as error:
+                lines = str(error).splitlines()
+                yield from (Problem(("plant", "file"), f"plant.file: {line}") for line in lines)
+                return
+            if duration > robot.duration + period:
+                text = f"duration: {duration:g} s, {plant.file} has {robot.duration:g} s from its start"
+                yield Problem(("duration",), text)
+
+
+def _cameras(sensors: Mapping[str, SensorSpec], plant: PlantSpec, estimator: EstimatorSpec) -> Problems:
+    if not isinstance(plant, SimulatedSpec):
+        return
+    for name, sensor in sensors.items():
+        try:
+            make_pan(sensor.pan, names(sensor, plant.beacons))
+        except ScenarioError as error:
+            yield Problem(("sensors", name, "pan"), f"sensors.{name}.pan: {error}")
+    mounts = {sensor.mount[:2]: name for name, sensor in sensors.items()}
+    if estimator.kind == "ekf" and len(mounts) > 1:
+        text = f"sensors: {' and '.join(mounts.values())} have different mounts; ekf knows one for all"
+        yield Problem(("sensors",), text)
+
+
 def _food(estimator: EstimatorSpec, sensors: Mapping[str, SensorSpec], plant: PlantSpec) -> Problems:
     """An estimator that corrects needs something to correct by."""
     if estimator.kind != "ekf" or not isinstance(plant, SimulatedSpec):
@@ -156,8 +212,13 @@ def _disturbed(
             )
 
 
-def _judged(criteria: Mapping[str, CriterionSpec]) -> Problems:
+def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems:
+    drives = ROBOTS[robot.kind].drives
     for name, criterion in criteria.items():
+        if criterion.drive is not None and criterion.drive not in drives:
+            known = nearest(criterion.drive, drives)
+            text = f"criteria.{name}.drive: the robot has no drive {criterion.drive!r}{known}"
+            yield Problem(("criteria", name, "drive"), text)
         metric = metric_of(name, criterion)
         if metric not in METRICS:
             text = f"criteria.{name}: unknown metric {metric!r}{nearest(metric, list(METRICS))}"
@@ -166,5 +227,5 @@ def _judged(criteria: Mapping[str, CriterionSpec]) -> Problems:
 
 CHECKS: tuple[Callable[..., Problems], ...] = (
     _periods, _ticks, _nodes, _beacons, _start, _path,
-    _files, _food, _guidance, _recorded, _disturbed, _judged,
+    _files, _body, _recording, _cameras, _food, _guidance, _recorded, _disturbed, _judged,
 )  # fmt: skip

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from hilbed.can.specs import BusSpec, NodeSpec
 from hilbed.control import ControllerSpec, ReferenceSpec
@@ -14,15 +14,8 @@ from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec
 from hilbed.robots import RobotSpec
 from hilbed.sensors import SensorSpec
-from hilbed.spec import Positive, Spec
+from hilbed.spec import Positive, Spec, Word
 
-
-def _word(value: Any) -> Any:
-    """A word is short for a block of that kind: `controller: open_loop`."""
-    return {"kind": value} if isinstance(value, str) else value
-
-
-Word = BeforeValidator(_word)
 ByKind = Field(discriminator="kind")
 
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from hilbed.scenario import yaml12
+from hilbed.scenario.problems import shorten
 from hilbed.types import ScenarioError
 
 
@@ -21,21 +22,30 @@ def apply(data: dict[str, Any], setting: str) -> yaml12.Path:
     inner: Any = data
     for step, following in pairwise(path):
         inner = _enter(inner, step, following, setting)
-    _put(inner, path[-1], yaml12.value(text), setting)
+    try:
+        value = yaml12.value(text)
+    except ScenarioError as error:
+        raise ScenarioError(f"--set {dotted}: {error}") from None
+    _put(inner, path[-1], value, setting)
     return path
 
 
 def _enter(block: Any, step: str | int, following: str | int, setting: str) -> Any:
     if isinstance(block, list):
         _check_index(block, step, setting)
-        return block[int(step)]
-    held = block.get(step)
+        step = int(step)
+        held = block[step]
+    else:
+        held = block.get(step)
     if isinstance(held, str) and not isinstance(following, int):
         block[step] = {"kind": held}
     elif held is None:
         block[step] = {}
     elif not isinstance(held, dict | list):
-        raise ScenarioError(f"--set {setting}: {step} is {held!r}, there is nothing inside it to set")
+        given = shorten(held)
+        raise ScenarioError(f"--set {setting}: {step} is {given}, there is nothing inside it to set")
+    else:
+        block[step] = held.copy()  # an anchor may have put the same block elsewhere, too
     return block[step]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 import types
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
@@ -32,10 +33,20 @@ class Places:
         self._settings.append((path, setting))
 
     def of(self, path: Sequence[str | int]) -> str:
-        """Returns `file:line` or `--set PATH=VALUE`."""
+        """Returns `file:line` or `--set PATH=VALUE`.
+
+        What is not in the file, such as a key that is missing, belongs to the setting that made its block.
+        """
+        path = tuple(path)
         for written, setting in reversed(self._settings):
-            if _stands_in(written, path):
+            if path[: len(written)] == written:
                 return f"--set {setting}"
+        block = path
+        while not self._marks.hold(block):
+            for written, setting in reversed(self._settings):
+                if written[: len(block)] == block:
+                    return f"--set {setting}"
+            block = block[:-1]
         return f"{self._name}:{self._marks.line(path)}"
 
     def tell(self, problems: Sequence[Problem]) -> str:
@@ -44,41 +55,45 @@ class Places:
         return "\n".join(f"{self.of(path)}: {message}" for path, message in lines)
 
 
-def _stands_in(written: yaml12.Path, path: Sequence[str | int]) -> bool:
-    """Tells whether `written` leads to `path`, which may hold union tags in between."""
-    steps = iter(path)
-    return all(any(step == other for other in steps) for step in written)
-
-
 def from_validation(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
     """Turns pydantic's errors into problems with the words that would do."""
-    return [
-        Problem(tuple(item["loc"]), _message(dict(item), model))
-        for item in error.errors(include_url=False)
-    ]  # fmt: skip
+    return [_problem(dict(item), model) for item in error.errors(include_url=False)]
 
 
-def _message(item: dict[str, Any], model: type[BaseModel]) -> str:
+def _problem(item: dict[str, Any], model: type[BaseModel]) -> Problem:
+    path = untagged(model, item["loc"])
+    message = _message(item, ".".join(map(str, path)), model)
+    return Problem((*path, "kind") if item["type"] == "union_tag_invalid" else path, message)
+
+
+def _message(item: dict[str, Any], key: str, model: type[BaseModel]) -> str:
     path, kind, given = item["loc"], item["type"], item["input"]
     context = item.get("ctx", {})
-    key = ".".join(str(step) for step in path)
     if kind == "extra_forbidden":
-        return f"unknown key {path[-1]!r}{nearest(str(path[-1]), keys_at(model, path[:-1]))}"
+        return f"unknown key {shorten(path[-1])}{nearest(str(path[-1]), keys_at(model, path[:-1]))}"
     if kind == "missing":
         return f"{key} is missing"
     if kind == "union_tag_not_found":
-        return f"{key} needs a kind: one of {_words(context)}"
+        return f"{key} needs a kind: one of {', '.join(kinds_at(model, path))}"
     if kind == "union_tag_invalid":
         tag = str(context["tag"])
-        return f"{key}: unknown kind {tag!r}{nearest(tag, _words(context).split(', '))}"
+        return f"{key}: unknown kind {shorten(tag)}{nearest(tag, _words(context).split(', '))}"
     if kind == "literal_error":
         words = [word.strip("' ") for word in str(context["expected"]).replace(" or ", ", ").split(",")]
-        return f"{key}: {given!r}{nearest(str(given), words)}"
+        return f"{key}: {shorten(given)}{nearest(given if isinstance(given, str) else '', words)}"
     if kind == "value_error":
-        return (
-            f"{key}: {context.get('error', item['msg'])}" if key else str(context.get("error", item["msg"]))
-        )
-    return f"{key}: {item['msg'][0].lower()}{item['msg'][1:]}, given {shorten(given)}"
+        why = str(context.get("error", item["msg"]))
+        return f"{key}: {why}" if key else why
+    why = _SHAPES.get(kind) or f"{item['msg'][0].lower()}{item['msg'][1:]}"
+    return f"{key}: {why}, given {shorten(given)}"
+
+
+_BLOCK, _LIST = "input should be a block of keys and values", "input should be a list"
+_SHAPES = {
+    "model_type": _BLOCK, "model_attributes_type": _BLOCK, "dict_type": _BLOCK,
+    "list_type": _LIST, "tuple_type": _LIST,
+}  # fmt: skip
+"""What pydantic says in words of Python."""
 
 
 def _words(context: dict[str, Any]) -> str:
@@ -86,17 +101,35 @@ def _words(context: dict[str, Any]) -> str:
 
 
 def shorten(given: object) -> str:
-    """Returns what was given, in at most 60 characters."""
-    text = repr(given)
+    """Returns what was given, in at most 60 characters, however large it is."""
+    text = _BRIEF.repr(given)
     return text if len(text) <= 60 else text[:57] + "…"
+
+
+_BRIEF = reprlib.Repr()
+_BRIEF.maxlevel, _BRIEF.maxstring, _BRIEF.maxother = 3, 60, 60
 
 
 def nearest(word: str, words: Sequence[str]) -> str:
     """Returns the end of a sentence: the valid word meant, or all of them."""
-    close = get_close_matches(word, words, n=1)
-    if close:
-        return f"; did you mean {close[0]!r}?"
+    close = get_close_matches(word[:100], words, n=1)
+    return f"; did you mean {close[0]!r}?" if close else _known(words)
+
+
+def _known(words: Sequence[str]) -> str:
     return f"; known: {', '.join(sorted(words))}" if words else ""
+
+
+def untagged(model: type[BaseModel], path: Sequence[str | int]) -> yaml12.Path:
+    """Returns a path of pydantic's without the tags of the unions on it: what a user would write."""
+    inside: list[Any] = [model]
+    steps: list[str | int] = []
+    for step in path:
+        choices = [choice for annotation in inside for choice in _choices(annotation)]
+        if not any(step in _tags(choice) and step not in _fields(choice) for choice in choices):
+            steps.append(step)
+        inside = [inner for choice in choices for inner in _enter(choice, step)]
+    return tuple(steps)
 
 
 def keys_at(model: type[BaseModel], path: Sequence[str | int]) -> list[str]:
@@ -105,6 +138,14 @@ def keys_at(model: type[BaseModel], path: Sequence[str | int]) -> list[str]:
     for step in path:
         inside = [inner for annotation in inside for inner in _enter(annotation, step)]
     return [str(key) for annotation in inside for choice in _choices(annotation) for key in _fields(choice)]
+
+
+def kinds_at(model: type[BaseModel], path: Sequence[str | int]) -> list[str]:
+    """Returns the kinds that a block at a path may have."""
+    inside: list[Any] = [model]
+    for step in path:
+        inside = [inner for annotation in inside for inner in _enter(annotation, step)]
+    return [str(tag) for annotation in inside for choice in _choices(annotation) for tag in _tags(choice)]
 
 
 def _enter(annotation: Any, step: str | int) -> Iterator[Any]:

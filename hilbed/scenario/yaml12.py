@@ -15,6 +15,9 @@ Path: TypeAlias = tuple[str | int, ...]
 LARGEST = 1_000_000
 """Characters; a scenario is some hundred lines, so more than this is a mistake."""
 
+LONGEST_NUMBER = 100
+"""Digits of a whole number."""
+
 
 class _Loader(yaml.SafeLoader):
     """SafeLoader with the resolvers of the YAML 1.2 core schema and no duplicate keys."""
@@ -24,6 +27,8 @@ class _Loader(yaml.SafeLoader):
 
 def _integer(loader: _Loader, node: yaml.ScalarNode) -> int:
     text = loader.construct_scalar(node)
+    if len(text) > LONGEST_NUMBER:
+        raise yaml.MarkedYAMLError(problem=f"a number of {len(text)} digits", problem_mark=node.start_mark)
     return int(text, 0) if text[:2] in ("0x", "0o") else int(text)
 
 
@@ -36,6 +41,8 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
     seen: dict[str, int] = {}
     for key, _ in node.value:
         line = key.start_mark.line + 1
+        if not isinstance(key, yaml.ScalarNode):
+            raise yaml.MarkedYAMLError(problem="a key is a single word", problem_mark=key.start_mark)
         if key.value in seen:
             raise yaml.MarkedYAMLError(
                 problem=f"key {key.value!r} stands here and in line {seen[key.value]}; keep one",
@@ -74,9 +81,19 @@ class Marks:
         for step in path:
             found = _child(node, step)
             if found is None:
-                continue  # a union's tag, or a key that is missing: its block is what can be shown
+                break  # a key that is missing: its block is what can be shown
             node, line = found
         return line
+
+    def hold(self, path: Sequence[str | int]) -> bool:
+        """Tells whether there is a value at `path`."""
+        node = self._root
+        for step in path:
+            found = _child(node, step)
+            if found is None:
+                return False
+            node, _ = found
+        return True
 
 
 def _child(node: yaml.Node | None, step: str | int) -> tuple[yaml.Node, int] | None:
@@ -103,7 +120,9 @@ def read(text: str, name: str) -> tuple[dict[str, Any], Marks]:
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise ScenarioError(f"{name}:{line}: {error.problem or 'not YAML'}") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+    except RecursionError:
+        raise ScenarioError(f"{name}: nested too deeply") from None
+    except (yaml.YAMLError, ValueError) as error:
         raise ScenarioError(f"{name}: not YAML: {error}") from None
     if not isinstance(data, dict):
         raise ScenarioError(
@@ -116,8 +135,9 @@ def value(text: str) -> Any:
     """Parses the VALUE of `--set PATH=VALUE`; raises ScenarioError."""
     try:
         return yaml.load(text, _Loader)
-    except (yaml.YAMLError, ValueError) as error:
-        raise ScenarioError(f"--set: {text!r} is not a YAML value: {error}") from None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        why = error.problem if isinstance(error, yaml.MarkedYAMLError) else error
+        raise ScenarioError(f"{text!r} is not a YAML value: {why}") from None
 
 
 class _Dumper(yaml.SafeDumper):

@@ -19,7 +19,7 @@ from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Ticket
 from hilbed.sensors.faults import misses, noisy, spurious
 from hilbed.sensors.pan import make_pan
 from hilbed.sensors.pan_spec import FixedSpec, PanSpec
-from hilbed.spec import Finite, Fraction, NonNegative, Positive
+from hilbed.spec import Finite, Fraction, Listed, NonNegative, Positive
 from hilbed.types import Nanos, Reading, Snapshot, Truth
 from hilbed.vision.egl import LARGEST_FRAME
 from hilbed.vision.lens import LARGEST, SMALLEST, Lens
@@ -45,7 +45,7 @@ class CameraSpec(DeliverySpec):
     width: Size = 640
     height: Size = 64
     fov_deg: Annotated[float, Field(gt=0, lt=180)] = 90.0
-    mount: tuple[Finite, Finite, Positive] = (0.0, 0.0, 0.3)
+    mount: Listed[tuple[Finite, Finite, Positive]] = (0.0, 0.0, 0.3)
     pan: PanSpec = FixedSpec()
     identity: Literal["colour", "anonymous"] = "colour"
     noise: Annotated[NonNegative, Field(le=pi)] = 0.0

@@ -6,9 +6,9 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from hilbed.spec import Finite, Positive, Spec
+from hilbed.spec import Finite, Point, Positive, Spec, Word
 
-Limits: TypeAlias = tuple[Finite, Finite]
+Limits: TypeAlias = Point
 
 
 class FixedSpec(Spec):
@@ -55,4 +55,4 @@ class TrackingSpec(_Turning):
 
 
 AnyPan: TypeAlias = FixedSpec | ScanningSpec | TrackingSpec
-PanSpec: TypeAlias = Annotated[AnyPan, Field(discriminator="kind")]
+PanSpec: TypeAlias = Annotated[AnyPan, Field(discriminator="kind"), Word]

@@ -17,7 +17,6 @@ from hilbed.plant.motor import MOTORS, Motor, MotorSpec
 from hilbed.plant.supply import Supply, SupplySpec
 from hilbed.plant.switched import SwitchedStage
 from hilbed.plant.winding import relax, through_diodes
-from hilbed.types import ScenarioError
 
 DT = 1e-3
 RE35, GP32C = MOTORS["re35"], GEARS["gp32c-33"]
@@ -217,7 +216,7 @@ def test_switched_tick_with_dead_time_is_brute_force() -> None:
     ("spec", "what"), [({"frequency": 1500.0}, "multiple"), ({"dead_time": 30e-6}, "fill the PWM period")]
 )
 def test_pwm_must_fit_the_tick(spec: dict[str, float], what: str) -> None:
-    with pytest.raises(ScenarioError, match=what):
+    with pytest.raises(ValueError, match=what):
         switched(**spec)
 
 

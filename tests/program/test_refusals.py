@@ -58,7 +58,7 @@ def test_the_good_one_is_good(tmp_path: Path) -> None:
         (
             "kind: bullet",
             "kind: mujoco",
-            "mine.yaml:4: plant: unknown kind 'mujoco'; known: bullet, recorded",
+            "mine.yaml:5: plant: unknown kind 'mujoco'; known: bullet, recorded",
         ),
         (
             "{at: [3, 1]}",
@@ -97,7 +97,46 @@ def test_the_good_one_is_good(tmp_path: Path) -> None:
             "disturbances: [{kind: load_torque, drive: middle, size: 1}]\nestimator",
             "mine.yaml:10: disturbances.0.drive: the robot has no drive 'middle'",
         ),
+        ("period: 0.01", "period: 1.0e-12", "mine.yaml:3: period: 1e-12 s is less than a nanosecond"),
+        ("duration: 2", "duration: '2'", "mine.yaml:2: duration: input should be a valid number, given '2'"),
+        (
+            "duration: 2",
+            "duration: true",
+            "mine.yaml:2: duration: input should be a valid number, given True",
+        ),
+        (
+            "kind: bullet",
+            "kind: bullet\n  tick: 0.002",
+            "mine.yaml:6: plant.tick: 0.002 s; the drives' firmware",
+        ),
+        (
+            "kind: bullet",
+            "kind: bullet\n  chopper: {kind: switched, frequency: 1500}",
+            "mine.yaml:6: plant.chopper: PWM frequency 1500 Hz is not a multiple of the tick's 1000 Hz",
+        ),
+        (
+            "kind: bullet",
+            "kind: bullet\n  chopper: {kind: switched, dead_time: 0.001}",
+            "mine.yaml:6: plant.chopper: dead_time 0.001 s",
+        ),
+        (
+            "{kind: camera}",
+            "{kind: camera, pan: {kind: tracking, beacon: 7}}",
+            "mine.yaml:9: sensors.camera.pan: the camera's pan axis is to follow beacon 7",
+        ),
+        (
+            "{kind: camera}",
+            "{kind: camera}\n  rear: {kind: camera, mount: [-0.1, 0, 0.3]}",
+            "mine.yaml:8: sensors: camera and rear have different mounts",
+        ),
+        ("lqr", "{kind: lqr, error: [1.0e+300, 1, 1]}", "mine.yaml:11: controller.error.0: input should be"),
+        (
+            "estimator",
+            "criteria: {duty_max: {max: 1, drive: middle}}\nestimator",
+            "mine.yaml:10: criteria.duty_max.drive: the robot has no drive 'middle'",
+        ),
         ("# A line", "a: [", "mine.yaml:"),
+        ("# A line", "? [a]\n: 1", "mine.yaml:1: a key is a single word"),
         ("# A line", "a: &a [*a]", "mine.yaml:"),
     ],
 )
@@ -122,7 +161,16 @@ def test_a_urdf_without_the_joints_is_refused(tmp_path: Path) -> None:
     said = wrong(
         tmp_path, GOOD.replace("estimator", "robot: {kind: diffdrive, urdf: body.urdf}\nestimator", 1)
     )
-    assert "left_wheel_joint" in " ".join(said)
+    assert "mine.yaml:10: robot.urdf: " in said[0]
+    assert "left_wheel_joint" in said[0]
+
+
+def test_what_a_recorded_file_lacks_is_told_with_its_place(tmp_path: Path) -> None:
+    (tmp_path / "log.npz").write_bytes(b"no zip at all")
+    text = "duration: 1\nplant: {kind: recorded, file: log.npz}\nestimator: ekf\nperod: 1\n"
+    said = wrong(tmp_path, text)
+    assert said[0].startswith("mine.yaml:2: plant.file: log.npz: ")
+    assert said[1].startswith("mine.yaml:4: unknown key 'perod'")
 
 
 @pytest.mark.parametrize(
@@ -130,6 +178,9 @@ def test_a_urdf_without_the_joints_is_refused(tmp_path: Path) -> None:
     [
         (("run", "dmeo"), "unknown scenario 'dmeo'; did you mean 'demo'?"),
         (("run", "nowhere.yaml"), "there is no file nowhere.yaml"),
+        (("run", "/"), "/ is not a file"),
+        (("run", "x" * 300), "File name too long"),
+        (("check", "demo", "--set", "a.b=1"), "--set a.b=1: unknown key 'a'"),
         (("run", "demo", "-i", "virtual"), "unrecognized arguments"),
         (("run", "demo", "--record", "some"), "invalid choice"),
         (("run", "demo", "--seed", "-1"), "seed"),

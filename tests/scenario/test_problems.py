@@ -53,11 +53,10 @@ def tell(text: str, *settings: str) -> str:
 def test_every_problem_is_told_at_once_in_the_order_of_the_file() -> None:
     assert tell(TEXT).splitlines() == [
         "f.yaml:1: scale: input should be greater than 0, given -1",
-        "f.yaml:3: shapes.0.circle.radius is missing",
+        "f.yaml:3: shapes.0.radius is missing",
         "f.yaml:4: unknown key 'radios'; did you mean 'radius'?",
         "f.yaml:5: shapes.1: unknown kind 'square'; known: circle, line",
-        "f.yaml:6: shapes.2.line.length: input should be a valid number, "
-        "unable to parse string as a number, given 'long'",
+        "f.yaml:6: shapes.2.length: input should be a valid number, given 'long'",
         "f.yaml:8: unknown key 'lenght'; did you mean 'length'?",
     ]
 
@@ -65,6 +64,38 @@ def test_every_problem_is_told_at_once_in_the_order_of_the_file() -> None:
 def test_a_value_that_was_laid_over_is_blamed_on_the_setting() -> None:
     assert tell("scale: 1\n", "scale=0") == "--set scale=0: scale: input should be greater than 0, given 0"
     assert tell("shapes: [{kind: line}]\n", "shapes.0.length=-2").startswith("--set shapes.0.length=-2: ")
+
+
+def test_what_is_not_in_the_file_is_blamed_on_the_setting_that_made_its_block() -> None:
+    assert tell("scale: 1\n", "named.a.lenght=1").startswith("--set named.a.lenght=1: unknown key 'lenght'")
+    assert tell("scale: 1\n", "shapez.0=1").startswith("--set shapez.0=1: unknown key 'shapez'")
+    assert tell("shapes: [{kind: line}]\n", "shapes.0.kind=cube").startswith("--set shapes.0.kind=cube: ")
+    assert tell("shapes: [{}]\n", "scale=2") == "f.yaml:1: shapes.0 needs a kind: one of circle, line"
+
+
+@pytest.mark.parametrize("given", ["'1'", "true", "[1]", "{a: 1}", "null"])
+def test_only_a_number_is_a_number(given: str) -> None:
+    assert tell(f"scale: {given}\n").startswith("f.yaml:1: scale: input should be a valid number, given ")
+
+
+def test_python_s_words_are_not_the_user_s() -> None:
+    assert tell("named: [1]\n") == "f.yaml:1: named: input should be a block of keys and values, given [1]"
+    assert tell("shapes: 1\n") == "f.yaml:1: shapes: input should be a list, given 1"
+
+
+def test_what_was_given_is_told_in_short_however_large_it_is() -> None:
+    bomb: object = "x"
+    for _ in range(40):
+        bomb = [bomb] * 9
+    assert len(problems.shorten(bomb)) <= 60
+    assert len(problems.shorten("x" * 10_000)) <= 60
+
+
+def test_a_setting_changes_one_block_of_those_that_an_anchor_shares() -> None:
+    data, _ = yaml12.read("a: &a {x: 1, y: [1, 2]}\nb: *a\n", "x")
+    overlay.apply(data, "a.x=2")
+    overlay.apply(data, "a.y.0=3")
+    assert data == {"a": {"x": 2, "y": [3, 2]}, "b": {"x": 1, "y": [1, 2]}}
 
 
 def test_settings_reach_into_lists_words_and_blocks_that_are_not_there() -> None:

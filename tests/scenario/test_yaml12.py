@@ -50,8 +50,18 @@ def test_lines_of_values_and_of_blocks_that_lack_them() -> None:
         ("a: !!python/object:os.system x\n", 1),
         ("- 1\n", 1),
         ("a: b: c\n", 1),
+        ("a: 1\n? [b, c]\n: 1\n", 2),
+        ("a: 1\n? {b: c}\n: 1\n", 2),
+        (f"a: 1\nb: 0x{'f' * 5000}\n", 2),
+        (f"a: {'9' * 5000}\n", 1),
     ],
 )
 def test_what_cannot_be_read_names_its_line(text: str, line: int) -> None:
     with pytest.raises(ScenarioError, match=f"^file.yaml:{line}: "):
+        yaml12.read(text, "file.yaml")
+
+
+@pytest.mark.parametrize("text", ["a: " + "[" * 5000, "a: " + "[" * 3000 + "]" * 3000, "a: " + "{b: " * 3000])
+def test_deep_nesting_is_refused(text: str) -> None:
+    with pytest.raises(ScenarioError, match=r"^file.yaml:"):
         yaml12.read(text, "file.yaml")
