@@ -7,7 +7,7 @@ from filterpy.kalman import ExtendedKalmanFilter
 
 from hilbed.angles import wrap
 from hilbed.estimation.measurement import Prediction
-from hilbed.estimation.motion import OdometryModel, motion
+from hilbed.estimation.motion import OdometryModel, motion, symmetric
 from hilbed.types import Array
 
 
@@ -29,6 +29,7 @@ class PoseFilter(ExtendedKalmanFilter):  # type: ignore[misc]
         """Predicts by an odometry increment (m, rad)."""
         change, self.F, self.Q = motion(float(self.x[2]), distance, turn, model)
         self.predict(change)
+        self.P = symmetric(self.P)
 
     def predict_x(self, u: Array) -> None:
         """Moves the state by `u`; the motion model is nonlinear, so filterpy's F x + B u is replaced."""
@@ -52,7 +53,7 @@ class PoseFilter(ExtendedKalmanFilter):  # type: ignore[misc]
             R=np.array(((variance,),)),
         )
         self.x = _wrapped(self.x)
-        self.P = 0.5 * (self.P + self.P.T)
+        self.P = symmetric(self.P)
 
 
 def _wrapped(state: Array) -> Array:

@@ -68,4 +68,9 @@ def predicted(
     change, F, Q = motion(float(mean[2]), *step, model)
     moved = mean + change
     moved[2] = wrap(float(moved[2]))
-    return moved, F @ covariance @ F.T + Q
+    return moved, symmetric(F @ covariance @ F.T + Q)
+
+
+def symmetric(covariance: Array) -> Array:
+    """Returns a covariance without what round-off makes of its symmetry."""
+    return 0.5 * (covariance + covariance.T)
