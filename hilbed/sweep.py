@@ -175,6 +175,11 @@ def as_json_text(tables: dict[Settings, list[Line]], results: Sequence[Result]) 
     """Returns the tables and every single run as JSON."""
     runs = [{"seed": r.job.seed, "set": r.job.settings, "status": r.status, **r.verdict} for r in results]
     table = [
-        {"set": variant, "lines": [line._asdict() for line in lines]} for variant, lines in tables.items()
+        {"set": variant, "lines": [_as_dict(line) for line in lines]} for variant, lines in tables.items()
     ]
     return json.dumps({"tables": table, "runs": runs}, indent=2)
+
+
+def _as_dict(line: Line) -> dict[str, Any]:
+    """Returns a line for JSON, which has no word for what is not a number."""
+    return {key: None if value != value else value for key, value in line._asdict().items()}
