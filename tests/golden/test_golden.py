@@ -1,0 +1,49 @@
+"""Runs of the bundled scenarios are what they were; `scripts/golden` shows and renews."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from hilbed.scenario import bundled
+from tests.golden.compare import moved
+from tests.golden.recording import FOLDER, SETTINGS, path, read, take
+
+DATA = os.environ.get("HILBED_DATA", "")
+needs_data = pytest.mark.skipif(
+    not (DATA and Path(DATA, "woods.npz").is_file()), reason="HILBED_DATA names no folder with woods.npz"
+)
+
+
+def scenarios() -> list[object]:
+    marks = {True: [needs_data], False: []}
+    return [pytest.param(name, marks=marks[name.startswith("recorded/")]) for name in SETTINGS]
+
+
+@pytest.mark.parametrize("name", scenarios())
+def test_nothing_has_moved(name: str) -> None:
+    changes = moved(read(name), take(name))
+    assert not changes, "\n".join(map(str, changes))
+
+
+@pytest.mark.parametrize(
+    ("setting", "first"),
+    [
+        ("plant.encoder.resolution=66001", "truth/"),
+        ("plant.supply.resistance=0.0501", "drive/"),
+        ("sensors.camera.noise=0.00001", "estimate/"),
+        ("estimator.odometry.turn_noise=0.00501", "deviation/"),
+        ("controller.error=[0.0501, 0.05, 0.05]", "command/"),
+    ],
+)
+def test_a_small_change_of_any_part_is_noticed(setting: str, first: str) -> None:
+    name = "slimane2014/tracking-line"
+    changes = moved(read(name), take(name, setting))
+    assert any(change.name.startswith(first) for change in changes), changes
+
+
+def test_every_bundled_scenario_has_a_record_and_every_record_a_scenario() -> None:
+    assert set(SETTINGS) == set(bundled.names())
+    assert {file.name for file in FOLDER.iterdir()} == {path(name).name for name in SETTINGS}
