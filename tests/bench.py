@@ -1,17 +1,24 @@
-"""The bench in this process, for tests that look at the signals of a run."""
+"""The bench in this process, for tests that look at the signals of a run; whether there is recorded data."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 
 from hilbed.record.folder import RunFolder
 from hilbed.runner import perform
 from hilbed.scenario.load import load
+
+_DATA = os.environ.get("HILBED_DATA", "")
+needs_data = pytest.mark.skipif(
+    not (_DATA and Path(_DATA, "woods.npz").is_file()), reason="HILBED_DATA names no folder with woods.npz"
+)
 
 
 class Ran(NamedTuple):

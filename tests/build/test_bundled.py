@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
@@ -13,21 +12,14 @@ from hilbed.record.notes import Notes
 from hilbed.scenario import bundled, yaml12
 from hilbed.scenario.load import load, resolved
 from hilbed.versions import versions
+from tests.bench import needs_data
 
-NAMES = bundled.names()
-DATA = os.environ.get("HILBED_DATA", "")
-has_data = bool(DATA) and Path(DATA, "woods.npz").is_file()
-
-
-@pytest.fixture
-def _any_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Enough for a scenario to be valid: the file is there, it need not be read."""
-    (tmp_path / "woods.npz").touch()
-    monkeypatch.setenv("HILBED_DATA", str(tmp_path))
+SCENARIOS = [
+    pytest.param(name, marks=needs_data if name.startswith("recorded/") else []) for name in bundled.names()
+]
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.usefixtures("_any_data")
+@pytest.mark.parametrize("name", SCENARIOS)
 def test_it_has_a_title_and_criteria(name: str) -> None:
     loaded = load(name)
     assert loaded.title
@@ -36,12 +28,11 @@ def test_it_has_a_title_and_criteria(name: str) -> None:
 
 
 def test_no_two_have_the_same_title() -> None:
-    titles = [bundled.summary(name)[-1] for name in NAMES]
+    titles = [bundled.summary(name)[-1] for name in bundled.names()]
     assert len(set(titles)) == len(titles)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.usefixtures("_any_data")
+@pytest.mark.parametrize("name", SCENARIOS)
 def test_written_out_with_every_default_it_is_the_same(name: str, tmp_path: Path) -> None:
     first = load(name)
     text = yaml12.write(resolved(first.scenario, versions()))
@@ -52,10 +43,8 @@ def test_written_out_with_every_default_it_is_the_same(name: str, tmp_path: Path
     assert yaml12.write(resolved(again.scenario, versions())) == text
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SCENARIOS)
 def test_a_rig_comes_out_of_it(name: str) -> None:
-    if name.startswith("recorded/") and not has_data:
-        pytest.skip("HILBED_DATA names no folder with woods.npz")
     loaded = load(name)
     bench = build(loaded, Notes(), Cost())
     try:

@@ -53,7 +53,6 @@ def test_it_runs(
     "settings",
     [
         ("plant.chopper={kind: switched}",),
-        ("plant.tick=0.002",),
         ("plant.encoder.latency=0.002", "plant.encoder.resolution=8000"),
         ("period=0.02",),
         ("period=0.1", "bus.silent_after=0.5"),

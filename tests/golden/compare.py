@@ -33,7 +33,7 @@ class Moved(NamedTuple):
 
     def __str__(self) -> str:
         if np.isnan(self.largest):
-            return f"{self.name}: there, gone, of another length or not a number any more"
+            return f"{self.name}: new, gone, of another length, or not known at the same times"
         text = f"{self.name}: {self.largest:.3g} off, allowed {self.limit:.3g}"
         return (
             text if np.isnan(self.first) else f"{text}; from t = {self.first:g} s, most at {self.worst:g} s"

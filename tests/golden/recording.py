@@ -33,8 +33,8 @@ SETTINGS: dict[str, tuple[str, ...]] = {
     "slimane2014/tracking-line-open": ("duration=6",),
     "slimane2014/tracking-stadium": ("duration=13",),
     "slimane2014/tracking-stadium-open": ("duration=13",),
-    "recorded/azimuth": (),
-    "recorded/range-azimuth": (),
+    "recorded/azimuth": ("duration=120",),
+    "recorded/range-azimuth": ("duration=120",),
 }  # fmt: skip
 
 AGGREGATES = (

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import pytest
 
 from hilbed.scenario import bundled
+from tests.bench import needs_data
 from tests.golden.compare import moved
 from tests.golden.recording import FOLDER, SETTINGS, path, read, take
-
-DATA = os.environ.get("HILBED_DATA", "")
-needs_data = pytest.mark.skipif(
-    not (DATA and Path(DATA, "woods.npz").is_file()), reason="HILBED_DATA names no folder with woods.npz"
-)
 
 
 def scenarios() -> list[object]:
