@@ -7,6 +7,7 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import TextIOWrapper
 from types import FrameType
 
 
@@ -36,7 +37,10 @@ def stop_on_signal() -> Iterator[Stop]:
 
 @contextmanager
 def quiet_pipe() -> Iterator[None]:
-    """Ends quietly when whoever reads the results has gone away."""
+    """Ends quietly when whoever reads the results has gone away; a narrow encoding shows "?" for "≤"."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         yield
         sys.stdout.flush()
