@@ -164,6 +164,7 @@ class SimulatedPlant:
             self._now = now = t + self._tick
             for sensor in self._sensors:
                 if sensor.due <= now:
+                    self._schedule.apply(now, self._world)  # a frame sees what begins with it
                     sensor.sample(self.truth())
 
     def _step(self, t: Nanos) -> None:

@@ -60,15 +60,15 @@ def supply_sag(calm: Signals, hit: Signals) -> None:
 def spurious_azimuths(calm: Signals, hit: Signals) -> None:
     false = hit["azimuth/beacon"] < 0
     assert false.sum() >= 3
-    assert hit["azimuth/t"][false].min() > START
+    assert hit["azimuth/t"][false].min() >= START
     assert np.isnan(hit["azimuth/true"][false]).all()
     assert not np.any(calm["azimuth/beacon"] < 0)
 
 
 def camera_loss(calm: Signals, hit: Signals) -> None:
-    """A frame at the very start was exposed before the first blind tick."""
+    """Frames at 0.5 and 0.6 s are lost, the one at the very end of the loss is not."""
     exposed = [set(np.round(signals["azimuth/t"], 3)) for signals in (calm, hit)]
-    assert exposed[0] - exposed[1] == {0.6, 0.7}
+    assert exposed[0] - exposed[1] == {0.5, 0.6}
     assert exposed[1] < exposed[0]
 
 
