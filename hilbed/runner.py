@@ -25,7 +25,7 @@ from hilbed.record.notes import Notes
 from hilbed.record.row import Sink
 from hilbed.scenario import yaml12
 from hilbed.scenario.load import Loaded, resolved
-from hilbed.types import BusError, Cycle, HilbedError, Nanos
+from hilbed.types import BusError, Cycle, Diverged, HilbedError, Nanos
 from hilbed.versions import versions
 
 PASSED, FAILED, INTERRUPTED, BROKEN, BUS = 0, 1, 2, 3, 7
@@ -75,8 +75,10 @@ class _Ending:
             step()
         except BusError as error:
             self.set(BUS, str(error))
-        except HilbedError as error:  # diverged, disk full, a camera's process lost
+        except Diverged as error:
             self.set(BROKEN, str(error))
+        except HilbedError as error:  # disk full, a camera's process lost
+            self.set(BROKEN, f"t = {seconds(self.last):.3f} s: {error}")
         except KeyboardInterrupt:
             self.set(INTERRUPTED, f"SIGINT at t = {seconds(self.last):.3f} s")
         except Exception as error:
@@ -107,6 +109,8 @@ def perform(
     signals = columns.finish(ticks, bench.tick)
     if bench.beacons:
         signals["beacons"] = np.array([beacon.at for beacon in bench.beacons])
+    if folder is not None and loaded.scenario.record != "none":
+        ending.attempt(lambda: folder.write_signals(signals))
     account = verdict.Account(
         scenario=loaded.name,
         seed=loaded.scenario.seed,
@@ -120,7 +124,7 @@ def perform(
     )
     content = verdict.conclude(account, signals, loaded.scenario.criteria)
     if folder is not None:
-        ending.attempt(lambda: _write(folder, loaded, signals, content))
+        ending.attempt(lambda: folder.write_verdict(verdict.text(content)))
     return Outcome(_status(content, ending), content, ending.trace)
 
 
@@ -173,14 +177,6 @@ def _cycles(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, endin
         if asked is not None:
             ending.set(INTERRUPTED, f"{asked} at t = {seconds(cycle.t):.3f} s")
             return
-
-
-def _write(
-    folder: RunFolder, loaded: Loaded, signals: dict[str, np.ndarray[Any, Any]], content: dict[str, Any]
-) -> None:
-    folder.write("verdict.json", verdict.text(content))
-    if loaded.scenario.record != "none":
-        folder.write_signals(signals)
 
 
 def _status(content: Mapping[str, Any], ending: _Ending) -> int:

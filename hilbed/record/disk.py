@@ -15,13 +15,18 @@ class RecordError(HilbedError):
 class GrowingFile:
     """A file that only ever grows by whole pieces, so that after a kill it ends with a complete one.
 
+    tail: what a format wants at its end. It follows the last piece until the next one takes its place, so
+    that the file is whole at any time; `finish` says that the writer's own end comes now.
+
     Writes are kept in memory until `flush`, which hands them to the operating system in one piece. A piece
     that does not fit on the disk is taken back entirely and remembered; `check` tells about it. `flush`
     itself never raises, since it may be called from inside a library that would swallow the exception.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, tail: bytes = b"") -> None:
         self._path = path
+        self._tail = tail
+        self._finished = False
         self._pending: list[bytes] = []
         self._position = 0
         self._size = 0
@@ -45,27 +50,34 @@ class GrowingFile:
 
     def flush(self) -> None:
         """Appends all that is pending in one piece, or nothing at all."""
-        piece = memoryview(b"".join(self._pending))
+        piece = b"".join(self._pending)
         self._pending.clear()
-        if self._error is not None or self._file.closed:
+        if not piece or self._error is not None or self._file.closed:
             return
         try:
-            self._append(piece)
+            self._append(piece if self._finished else piece + self._tail)
+            self._size += len(piece)
         except OSError as error:
             self._error = error
             self._take_back()
 
-    def _append(self, piece: memoryview) -> None:
-        done = 0
-        while done < len(piece):
-            done += self._file.write(piece[done:]) or 0
-        self._size += done
+    def finish(self) -> None:
+        """Leaves the end of the file to what is written from now on."""
+        self._finished = True
+
+    def _append(self, data: bytes) -> None:
+        rest = memoryview(data)
+        self._file.seek(self._size)
+        while rest:
+            rest = rest[self._file.write(rest) or 0 :]
 
     def _take_back(self) -> None:
         try:
             self._file.truncate(self._size)
+            if self._size:
+                self._append(self._tail)
         except OSError:
-            return  # a device: there is nothing to take back
+            return  # a device, or not even that much room
 
     def check(self) -> None:
         """Raises RecordError if a piece could not be written."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Mapping
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,8 @@ from hilbed.types import ScenarioError
 
 SCENARIO, SIGNALS, MCAP = "scenario.yaml", "signals.npz", "log.mcap"
 CAN, VERDICT, REPORT, FRAMES = "can.log", "verdict.json", "report.html", "frames"
-CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, VERDICT, REPORT, FRAMES)
+RESERVE, RESERVED = ".reserve", 1 << 16
+CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, VERDICT, REPORT, FRAMES, RESERVE)
 
 
 class RunFolder:
@@ -33,12 +35,19 @@ class RunFolder:
         _check_writable(path)
 
     def start(self) -> Path:
-        """Removes the old run, makes the folder and returns its path; raises ScenarioError if it cannot."""
+        """Removes the old run, makes the folder and returns its path; raises ScenarioError if it cannot.
+
+        Room for the verdict is set aside, so that it can be told that the disk was full.
+        """
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             for name in CONTENT:
                 _remove(self.path / name)
+            (self.path / RESERVE).write_bytes(bytes(RESERVED))
         except OSError as error:
+            with suppress(OSError):
+                _remove(self.path / RESERVE)
+                self.path.rmdir()  # where nothing is in it
             raise ScenarioError(f"{self.path}: {error.strerror}") from error
         return self.path
 
@@ -46,6 +55,12 @@ class RunFolder:
         """Writes a file at once or not at all; raises RecordError if it cannot be written."""
         data = content.encode() if isinstance(content, str) else content
         write_whole(self.path / name, data)
+
+    def write_verdict(self, text: str) -> None:
+        """Writes verdict.json in the room that was set aside; raises RecordError if it cannot be written."""
+        with suppress(OSError):
+            _remove(self.path / RESERVE)
+        self.write(VERDICT, text)
 
     def write_signals(self, signals: Mapping[str, np.ndarray[Any, Any]]) -> None:
         """Writes signals.npz; raises RecordError if it cannot be written."""

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from hilbed.record.disk import RecordError
+from hilbed.record.folder import write_whole
 from hilbed.record.row import Batch
 from hilbed.types import Snapshot
 
@@ -58,7 +59,7 @@ def _write(folder: Path, k: int, snapshot: Snapshot) -> str:
 
     name = f"{k:02d}.png"
     _, data = cv2.imencode(".png", snapshot.image[:, :, ::-1])
-    (folder / name).write_bytes(data.tobytes())
+    write_whole(folder / name, data.tobytes())
     entry = {
         "t": snapshot.t / 1e9,
         "file": name,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from struct import pack
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -42,16 +43,20 @@ class Setting(NamedTuple):
     scenario: str = ""
 
 
+TAIL = pack("<BQI", 0x0F, 4, 0) + pack("<BQQQI", 0x02, 20, 0, 0, 0) + b"\x89MCAP0\r\n"
+"""The end of an MCAP file without an index: data end, footer, magic bytes."""
+
+
 class McapLog:
     """A sink that writes every signal, frame and image; log time is t + `offset` (ns), never negative.
 
-    Every batch goes to the disk as a whole chunk: a run that is killed loses the last one at most. The same
-    run gives the same bytes.
+    Every batch goes to the disk as a whole chunk, and the file is a whole one after each: a run that is
+    killed loses the last batch at most, and the index. The same run gives the same bytes.
     """
 
     def __init__(self, path: Path, offset: Nanos = 0, setting: Setting | None = None) -> None:
         self._offset = offset
-        self._file = GrowingFile(path)
+        self._file = GrowingFile(path, TAIL)
         self._channels = Channels(self._file)
         self._cycles = CycleLog(self._channels, offset)
         self._tick_names: list[str] = []
@@ -87,6 +92,7 @@ class McapLog:
 
     def close(self) -> None:
         """Writes the index; raises RecordError if the disk was full, what was written stays readable."""
+        self._file.finish()
         self._channels.close()
         self._file.close()
 

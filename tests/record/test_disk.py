@@ -21,6 +21,9 @@ class Small:
             raise OSError(errno.ENOSPC, "No space left on device")
         return self.file.write(data[:room])
 
+    def seek(self, offset: int) -> int:
+        return self.file.seek(offset)
+
     def truncate(self, size: int) -> int:
         return self.file.truncate(size)
 
@@ -41,6 +44,35 @@ def test_a_piece_that_does_not_fit_is_taken_back(tmp_path: Path) -> None:
     with pytest.raises(RecordError):
         file.close()
     assert path.read_bytes() == b"first\n"
+
+
+def test_the_tail_stays_behind_the_last_piece_until_the_writer_ends_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "log"
+    file = GrowingFile(path, b"END")
+    seen = []
+    for piece in (b"first,", b"second,"):
+        file.write(piece)
+        file.flush()
+        file.flush()
+        seen.append(path.read_bytes())
+    assert seen == [b"first,END", b"first,second,END"]
+    file.finish()
+    file.write(b"index.")
+    file.close()
+    assert path.read_bytes() == b"first,second,index."
+
+
+def test_what_does_not_fit_leaves_the_tail_where_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "log"
+    file = GrowingFile(path, b"END")
+    file._file = Small(path)  # type: ignore[assignment]
+    file.write(b"first,")
+    file.flush()
+    file.write(b"second,")
+    file.finish()
+    with pytest.raises(RecordError):
+        file.close()
+    assert path.read_bytes() == b"first,END"
 
 
 def test_it_goes_nowhere_but_to_its_end(tmp_path: Path) -> None:

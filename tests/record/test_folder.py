@@ -16,7 +16,7 @@ def finished(path: Path) -> Path:
     folder = RunFolder(path)
     folder.start()
     folder.write("scenario.yaml", "seed: 1\n")
-    folder.write("verdict.json", "{}")
+    folder.write_verdict("{}")
     (path / "frames").mkdir()
     (path / "frames" / "00.png").write_bytes(b"png")
     return path
@@ -34,7 +34,7 @@ def test_an_existing_run_is_replaced_only_by_force_and_only_at_the_start(tmp_pat
     folder = RunFolder(path, force=True)
     assert (path / "verdict.json").exists()
     folder.start()
-    assert list(path.iterdir()) == []
+    assert not {"scenario.yaml", "verdict.json", "frames"} & {entry.name for entry in path.iterdir()}
 
 
 def test_force_removes_runs_and_nothing_else(tmp_path: Path) -> None:
@@ -44,7 +44,7 @@ def test_force_removes_runs_and_nothing_else(tmp_path: Path) -> None:
     path = finished(tmp_path / "demo-1")
     (path / "notes.txt").write_text("mine")
     RunFolder(path, force=True).start()
-    assert [entry.name for entry in path.iterdir()] == ["notes.txt"]
+    assert [entry.name for entry in path.iterdir() if entry.name[0] != "."] == ["notes.txt"]
 
 
 def test_a_place_that_cannot_be_used_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -71,7 +71,7 @@ def test_a_full_disk_leaves_the_old_file_and_no_half_one(
 ) -> None:
     folder = RunFolder(tmp_path / "demo")
     folder.start()
-    folder.write("verdict.json", "old")
+    folder.write_verdict("old")
 
     def full(self: Path, data: bytes) -> int:
         with self.open("wb") as file:
@@ -83,3 +83,27 @@ def test_a_full_disk_leaves_the_old_file_and_no_half_one(
         folder.write("verdict.json", "new")
     assert [entry.name for entry in folder.path.iterdir()] == ["verdict.json"]
     assert (folder.path / "verdict.json").read_text() == "old"
+
+
+def test_the_verdict_has_its_room_on_a_disk_that_is_full(tmp_path: Path) -> None:
+    folder = RunFolder(tmp_path / "demo")
+    reserve = sum(entry.stat().st_size for entry in folder.start().iterdir())
+    assert reserve >= 1 << 16
+    folder.write_verdict("told")
+    assert [entry.name for entry in folder.path.iterdir()] == ["verdict.json"]
+    assert folder.path.joinpath("verdict.json").read_text() == "told"
+
+
+def test_a_disk_that_is_full_at_the_start_is_left_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(self: Path, data: bytes) -> int:
+        with self.open("wb") as file:
+            file.write(data[:1])
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    folder = RunFolder(tmp_path / "demo")
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(ScenarioError, match="No space left"):
+        folder.start()
+    assert list(tmp_path.iterdir()) == []

@@ -5,15 +5,15 @@ import signal
 import struct
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from mcap.reader import NonSeekingReader, make_reader
+from mcap.reader import make_reader
 
 from hilbed.record.disk import RecordError
 from hilbed.record.mcap import McapLog, Setting, events
+from hilbed.record.row import Batch
 from hilbed.scene import BeaconSpec
 from hilbed.types import Nanos
 from tests.record.runs import FIELDS, image, play
@@ -133,15 +133,29 @@ def test_a_full_disk_ends_the_run_with_a_word(capfd: pytest.CaptureFixture[str])
     assert capfd.readouterr().err == ""
 
 
-def readable(path: Path) -> Iterator[int]:
-    """Log times of a file without an end, as `mcap recover` reads it."""
+def readable(path: Path) -> list[int]:
+    """Log times of a file that has not been finished, as any reader finds them."""
     with path.open("rb") as stream:
-        try:
-            for _, channel, message in NonSeekingReader(stream).iter_messages(log_time_order=False):
-                if channel.topic == "/cycle":
-                    yield message.log_time
-        except Exception:
-            return
+        return [message.log_time for _, _, message in make_reader(stream).iter_messages(topics="/cycle")]
+
+
+def test_the_file_is_a_whole_one_all_the_time(tmp_path: Path) -> None:
+    path = tmp_path / "log.mcap"
+    log = McapLog(path, BOOT)
+    seen: list[int] = []
+
+    class Looker:
+        def take(self, batch: Batch) -> None:  # noqa: ARG002
+            seen.append(len(readable(path)))
+
+        def close(self) -> None:
+            seen.append(len(readable(path)))
+
+    play([log, Looker()], 351)
+    assert seen == sorted(seen)
+    assert len(seen) > 5
+    assert seen[0] > 0
+    assert seen[-1] == 351
 
 
 def test_a_killed_process_leaves_a_log_up_to_the_last_second(tmp_path: Path) -> None:
@@ -158,6 +172,6 @@ def test_a_killed_process_leaves_a_log_up_to_the_last_second(tmp_path: Path) -> 
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     process.stdout.close()
-    times = list(readable(path))
+    times = readable(path)
     assert times == [BOOT + k * 10_000_000 for k in range(len(times))]
     assert times[-1] >= BOOT + 2_500_000_000
