@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import traceback
 from collections.abc import Sequence
@@ -11,7 +12,8 @@ from pathlib import Path
 from typing import NoReturn
 
 from hilbed import __version__
-from hilbed.types import HilbedError, ScenarioError
+
+# Nothing else of the bench is imported up here: what takes time happens where an interrupt is waited for.
 
 INTERRUPTED, BROKEN, REFUSED = 2, 3, 4
 
@@ -28,29 +30,45 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Runs the command that the arguments name and exits with its status."""
-    from hilbed.console import quiet_pipe
+    try:
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        # Matrices here are 3 × 3: threads only cost. To be said before numpy is imported.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        status = _status(_parser().parse_args(arguments))
+    except KeyboardInterrupt:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)  # it ends already
+        print("interrupted", file=sys.stderr)
+        status = INTERRUPTED
+    sys.exit(status)
 
-    # Matrices here are 3 × 3: threads only cost. To be said before numpy is imported.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    options = _parser().parse_args(arguments)
-    status = 0
+
+def _status(options: Options) -> int:
+    """Does what a command is there for and returns its exit status; what goes wrong is told."""
+    from hilbed.console import open_streams, quiet_pipe
+    from hilbed.types import HilbedError, ScenarioError
+
+    open_streams()
     with quiet_pipe():
         try:
-            status = options.command(options)
+            status: int = options.command(options)
+            return status
         except ScenarioError as error:
             print(error, file=sys.stderr)
-            status = REFUSED
+            return REFUSED
         except HilbedError as error:
             print(error, file=sys.stderr)
-            status = BROKEN if options.command is _run else REFUSED
-        except KeyboardInterrupt:
-            print("interrupted", file=sys.stderr)
-            status = INTERRUPTED
+            return BROKEN if options.command is _run else REFUSED
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            print(f"{error.filename or 'output'}: {error.strerror}", file=sys.stderr)
+            return BROKEN
         except Exception:
             traceback.print_exc()
             print("This is a mistake in hilbed, not in what it was given.", file=sys.stderr)
-            status = BROKEN
-    sys.exit(status)
+            return BROKEN
+    return 0
 
 
 def _parser() -> argparse.ArgumentParser:

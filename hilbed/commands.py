@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hilbed import verdict
 from hilbed.clock import seconds
-from hilbed.console import Stop, end_progress, progress, stop_on_signal
+from hilbed.console import Stop, end_progress, progress, quiet_pipe, stop_on_signal
 from hilbed.record.folder import RunFolder
 from hilbed.report import write_report
 from hilbed.runner import Outcome, Watch, perform, processors
@@ -31,7 +31,8 @@ def run(options: argparse.Namespace) -> int:
     if outcome.trace:
         print(f"{outcome.trace}This is a mistake in hilbed, not in the scenario.", file=sys.stderr)
     report = _report(folder.path, loaded)
-    _tell(outcome, folder.path, report, options.json)
+    with quiet_pipe():
+        _tell(outcome, folder.path, report, options.json)
     return outcome.status
 
 

@@ -35,6 +35,17 @@ def stop_on_signal() -> Iterator[Stop]:
             signal.signal(number, handler)
 
 
+def open_streams() -> None:
+    """Puts the null device where standard input, output or error is closed.
+
+    Else the next file to be opened, a log perhaps, would take the stream's place.
+    """
+    for name in ("stdin", "stdout", "stderr"):
+        if getattr(sys, name) is None:
+            nowhere = os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free: this stream's
+            setattr(sys, name, os.fdopen(nowhere, "r" if name == "stdin" else "w"))
+
+
 @contextmanager
 def quiet_pipe() -> Iterator[None]:
     """Ends quietly when whoever reads the results has gone away; a narrow encoding shows "?" for "≤"."""

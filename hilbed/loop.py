@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import isfinite
 
+from hilbed.clock import seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.ports import Base, Controller, Estimator, Plant, Sensor
-from hilbed.types import Cycle, Nanos
+from hilbed.types import Cycle, Diverged, Nanos
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,10 @@ class Rig:
 
 
 def think(rig: Rig, t: Nanos) -> Cycle:
-    """Reads the robot and its sensors at `t` and decides what to do, without doing it."""
+    """Reads the robot and its sensors at `t` and decides what to do, without doing it.
+
+    Raises Diverged where the estimator has lost its numbers.
+    """
     truth = rig.plant.truth()
     start = perf_counter()
     odometry = rig.base.read(t)
@@ -36,6 +41,8 @@ def think(rig: Rig, t: Nanos) -> Cycle:
     command = rig.controller.step(t, estimate)
     rig.cost.controller += perf_counter() - thought
     rig.cost.estimator += thought - start
+    if not isfinite(estimate.mean.sum() + estimate.covariance.sum()):
+        raise Diverged(f"t = {seconds(t):.3f} s: the estimate is not finite ({estimate.mean.tolist()})")
     return Cycle(t, truth, odometry, readings, estimate, command)
 
 

@@ -10,7 +10,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from itertools import product
 from typing import Any, NamedTuple
 
-from hilbed.console import end_progress, progress
+from hilbed.console import end_progress, progress, quiet_pipe
 from hilbed.scenario.load import load
 from hilbed.types import ScenarioError
 
@@ -59,7 +59,8 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
     with ProcessPoolExecutor(workers, mp_context=context) as pool:
         results = run_all(todo, pool)
     tables = {variant: tabulate([r for r in results if r.job.settings == variant]) for variant in variants}
-    print(as_text(tables, results) if not as_json else as_json_text(tables, results))
+    with quiet_pipe():
+        print(as_text(tables, results) if not as_json else as_json_text(tables, results))
     return 0 if all(result.status == 0 for result in results) else 1
 
 

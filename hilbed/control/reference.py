@@ -37,7 +37,7 @@ class PathReference:
 class _Reference(Spec):
     """speed m/s; acceleration (m/s²) of the ramps at start and open end, null for a jump."""
 
-    speed: Positive = 0.5
+    speed: Annotated[float, Field(gt=0, le=100)] = 0.5
     acceleration: Positive | None = None
 
     def path(self) -> Path:

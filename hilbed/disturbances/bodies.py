@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from hilbed.clock import nanos
 from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase, drawn
@@ -34,7 +35,7 @@ class WheelRadius(DisturbanceBase):
 
     kind: Literal["wheel_radius"] = "wheel_radius"
     drive: str
-    size: Positive
+    size: Annotated[float, Field(ge=SMALLEST_WHEEL, le=10)]
     spread: NonNegative = 0.0
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase
 from hilbed.effects import Effects, Surroundings
-from hilbed.spec import NonNegative
 from hilbed.types import Nanos
 
 
@@ -16,7 +16,7 @@ class SpuriousAzimuths(DisturbanceBase):
     """False azimuths: `size` of them in a frame on the average (Poisson)."""
 
     kind: Literal["spurious_azimuths"] = "spurious_azimuths"
-    size: NonNegative
+    size: Annotated[float, Field(ge=0, le=1000)]
 
 
 class CameraLoss(DisturbanceBase):

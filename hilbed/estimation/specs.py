@@ -9,6 +9,9 @@ from pydantic import Field
 from hilbed.estimation.motion import OdometryModel
 from hilbed.spec import Finite, Listed, NonNegative, Point, Positive, Spec
 
+Deviation = Annotated[float, Field(ge=1e-9, le=1e6)]
+"""A standard deviation; one of zero would leave nothing to divide by."""
+
 SmallAngle = Annotated[float, Field(ge=-3.2, le=3.2, allow_inf_nan=False)]
 
 
@@ -40,7 +43,7 @@ class ReadingSpec(Spec):
     """
 
     use: bool = True
-    std: Positive | None = None
+    std: Deviation | None = None
     bias: Finite = 0.0
     beacon_std: NonNegative = 0.0
 
@@ -61,7 +64,7 @@ class EkfSpec(Spec):
     """
 
     kind: Literal["ekf"] = "ekf"
-    initial_std: Listed[tuple[Positive, Positive, Positive]] = (0.01, 0.01, 0.01)
+    initial_std: Listed[tuple[Deviation, Deviation, Deviation]] = (0.01, 0.01, 0.01)
     odometry: OdometrySpec = OdometrySpec()
     azimuth: ReadingSpec = ReadingSpec()
     range: ReadingSpec = ReadingSpec()
@@ -76,7 +79,7 @@ class DeadReckoningSpec(Spec):
     """Odometry alone, with the doubt that grows on the way; initial_std: x m, y m, yaw rad."""
 
     kind: Literal["odometry"] = "odometry"
-    initial_std: Listed[tuple[Positive, Positive, Positive]] = (0.01, 0.01, 0.01)
+    initial_std: Listed[tuple[Deviation, Deviation, Deviation]] = (0.01, 0.01, 0.01)
     odometry: OdometrySpec = OdometrySpec()
 
 

@@ -7,7 +7,7 @@ from math import floor, tau
 
 from pydantic import Field
 
-from hilbed.spec import NonNegative, Spec
+from hilbed.spec import Spec
 from hilbed.types import ScenarioError
 
 _SPAN = 1 << 32
@@ -15,10 +15,10 @@ _HALF = 1 << 31
 
 
 class EncoderSpec(Spec):
-    """resolution: counts a wheel turn (500 lines × 4 × gear 33 by default); latency s, whole ticks."""
+    """resolution: counts a wheel turn (500 lines × 4 × gear 33 by default); latency s, whole ticks, ≤ 1."""
 
     resolution: int = Field(default=66_000, gt=0, lt=1 << 31)
-    latency: NonNegative = 0.0
+    latency: float = Field(default=0.0, ge=0, le=1)
 
 
 class Encoder:

@@ -111,6 +111,9 @@ class RemoteEye:
             self.close()
             patience = self._socket.gettimeout()
             raise EyeLost(f"the camera's own process has not answered for {patience:g} s") from error
+        except KeyboardInterrupt:
+            self.close()  # nobody waits for a child that may hang, not even while the drives stop
+            raise
         except (OSError, ValueError) as error:
             raise self._lost() from error
 

@@ -129,6 +129,22 @@ def test_the_good_one_is_good(tmp_path: Path) -> None:
             "{kind: camera}\n  rear: {kind: camera, mount: [-0.1, 0, 0.3]}",
             "mine.yaml:8: sensors: camera and rear have different mounts",
         ),
+        (
+            "length: 4",
+            "length: 4, speed: 1.0e+30",
+            "mine.yaml:12: reference.speed: input should be less than",
+        ),
+        ("ekf", "{kind: ekf, initial_std: [0, 1, 1]}", "mine.yaml:10: estimator.initial_std.0: input should"),
+        (
+            "kind: bullet",
+            "kind: bullet\n  encoder: {latency: 1.0e+6}",
+            "mine.yaml:6: plant.encoder.latency: input should be less than or equal to 1",
+        ),
+        (
+            "estimator",
+            "disturbances: [{kind: spurious_azimuths, size: 1.0e+6}]\nestimator",
+            "mine.yaml:10: disturbances.0.size: input should be less than or equal to 1000",
+        ),
         ("lqr", "{kind: lqr, error: [1.0e+300, 1, 1]}", "mine.yaml:11: controller.error.0: input should be"),
         (
             "estimator",
