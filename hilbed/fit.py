@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from math import log, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -46,9 +47,12 @@ def fit(run: Path, fraction: float = 0.5) -> str:
     whole = _signals(run)
     if "beacons" not in whole:
         raise ScenarioError(f"fit: {run} is a run without beacons, there are no readings to fit")
-    beacons: list[Point] = [(x, y) for x, y in whole["beacons"].tolist()]
-    signals = first_part(whole, fraction)
-    found = fit_signals(signals, beacons)
+    try:
+        beacons: list[Point] = [(x, y) for x, y in whole["beacons"].tolist()]
+        signals = first_part(whole, fraction)
+        found = fit_signals(signals, beacons)
+    except (LookupError, TypeError, ValueError, ArithmeticError) as error:
+        raise ScenarioError(f"fit: {run} holds a run that cannot be fitted to: {error!r}") from error
     told = ", ".join(f"{count} {kind} readings" for kind, (*_, count) in found.sensor.kinds.items())
     return "\n".join(
         (
@@ -64,7 +68,7 @@ def _signals(run: Path) -> dict[str, Any]:
     try:
         with np.load(run / "signals.npz", allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
-    except (OSError, ValueError, EOFError) as error:
+    except (OSError, ValueError, EOFError, BadZipFile) as error:
         raise ScenarioError(f"fit: {run} holds no readable signals.npz ({error})") from None
 
 

@@ -16,6 +16,8 @@ from hilbed.types import ScenarioError
 
 Settings = tuple[str, ...]
 
+MOST_SEEDS = 100_000
+
 
 class Job(NamedTuple):
     """One run of a sweep."""
@@ -49,6 +51,8 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
 
     0 where every criterion of every run is met, else 1. Raises ScenarioError before the first run.
     """
+    if jobs is not None and jobs < 1:
+        raise ScenarioError(f"--jobs {jobs}: at least one process has to run")
     variants = list(_variants(settings))
     for variant in variants:
         load(scenario, variant)
@@ -70,6 +74,8 @@ def parse_seeds(text: str) -> range:
     if not first.isdecimal() or (dots and not last.isdecimal()):
         raise ScenarioError(f"--seeds {text}: give A..B with whole numbers, such as 1..40")
     seeds = range(int(first), int(last if dots else first) + 1)
+    if seeds.stop > MOST_SEEDS + seeds.start:
+        raise ScenarioError(f"--seeds {text}: more than {MOST_SEEDS} seeds")
     if not seeds:
         raise ScenarioError(f"--seeds {text}: there is no seed from {first} to {last}")
     return seeds

@@ -47,6 +47,8 @@ def _measured(
     end = inf if criterion.end is None else criterion.end
     try:
         chosen = window(signals, criterion.start, end)
+        if not any(len(chosen[time]) for time in ("t", "tick/t") if time in chosen):
+            raise Missing(f"the run has no rows from {criterion.start:g} to {end:g} s")
         return measure(chosen, metric_of(name, criterion), criterion.drive), ""
     except Missing as missing:
         return nan, str(missing)

@@ -30,9 +30,12 @@ class RunFolder:
 
     def __init__(self, path: Path, force: bool = False) -> None:
         self.path = path
-        if path.is_symlink() or path.exists():
-            _check_existing(path, force)
-        _check_writable(path)
+        try:
+            if path.is_symlink() or path.exists():
+                _check_existing(path, force)
+            _check_writable(path)
+        except OSError as error:
+            raise ScenarioError(f"{path}: {error.strerror}; give another folder with --out") from error
 
     def start(self) -> Path:
         """Removes the old run, makes the folder and returns its path; raises ScenarioError if it cannot.

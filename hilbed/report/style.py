@@ -5,7 +5,9 @@ Figures are drawn in stand-in colours, which the page's style sheet then gives t
 
 from __future__ import annotations
 
+import logging
 import re
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
@@ -88,10 +90,15 @@ _RC: dict[Any, Any] = {
 
 @contextmanager
 def drawing() -> Iterator[None]:
-    """Sets the look for what is drawn inside."""
+    """Sets the look for what is drawn inside.
+
+    What matplotlib has to say about its cache, or about axes that a broken run leaves empty, helps nobody.
+    """
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     import matplotlib
 
-    with matplotlib.rc_context(_RC):
+    with matplotlib.rc_context(_RC), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
         yield
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.program.hilbed import hilbed
@@ -206,6 +207,9 @@ def test_what_a_recorded_file_lacks_is_told_with_its_place(tmp_path: Path) -> No
         (("run", "demo", "--set", "duration=1", "--out", "/proc/run"), "/proc/run"),
         (("sweep", "demo", "--seeds", "5..1"), "there is no seed"),
         (("sweep", "demo", "--seeds", "a"), "give A..B"),
+        (("sweep", "demo", "--seeds", "1..2", "--jobs", "0"), "--jobs 0"),
+        (("sweep", "demo", "--seeds", "1..99999999999999999999"), "more than 100000 seeds"),
+        (("run", "demo", "--set", "duration=1", "--out", "x" * 300), "File name too long"),
         (("report", "nowhere"), "nowhere"),
         (("fit", "nowhere"), "nowhere"),
         (("bench", "dmeo"), "did you mean 'demo'?"),
@@ -221,3 +225,20 @@ def test_a_command_that_cannot_be_taken_ends_with_4(
     assert message in ended.err
     assert "Traceback" not in ended.err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04" + bytes(100)])
+def test_fit_refuses_what_is_no_run(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "signals.npz").write_bytes(content)
+    ended = hilbed("fit", tmp_path)
+    assert (ended.status, ended.out) == (4, "")
+    assert "holds no readable signals.npz" in ended.err
+
+
+@pytest.mark.parametrize("rows", [0, 1, 10])
+def test_fit_refuses_a_run_that_does_not_fit_together(tmp_path: Path, rows: int) -> None:
+    t = 0.1 * np.arange(200)
+    np.savez(tmp_path / "signals.npz", t=t, beacons=np.zeros((2, 2)), truth=np.zeros((rows, 3)))
+    ended = hilbed("fit", tmp_path)
+    assert (ended.status, ended.out) == (4, "")
+    assert "Traceback" not in ended.err

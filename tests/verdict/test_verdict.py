@@ -9,7 +9,7 @@ import pytest
 from pydantic import ValidationError
 
 from hilbed.cost import PARTS
-from hilbed.criteria import CriterionSpec
+from hilbed.criteria import CriterionSpec, judge
 from hilbed.verdict import Account, coloured, conclude, table, text
 
 T = np.arange(101) * 0.01
@@ -130,3 +130,11 @@ def test_no_color_is_honoured(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not coloured(io.StringIO())
     monkeypatch.setenv("NO_COLOR", "1")
     assert not coloured(Terminal())
+
+
+def test_a_window_after_the_end_is_told() -> None:
+    block = {"metric": "estimate_position_rms", "max": 1.0, "from": 1e6, "to": 2e6}
+    late = CriterionSpec.model_validate(block)
+    (judged,) = judge(SIGNALS, {"late": late}).values()
+    assert not judged.passed
+    assert judged.reason == "the run has no rows from 1e+06 to 2e+06 s"
