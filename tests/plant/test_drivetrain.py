@@ -94,7 +94,8 @@ def test_limited_tick_rises_then_holds() -> None:
 def test_open_bridge_stops_the_current_at_zero(current: float, emf: float) -> None:
     end, mean, drawn, _ = averaged().coast(current, 24.0, emf)
     assert end == 0.0 or (end * current > 0.0 and abs(end) < abs(current))
-    assert mean * current >= 0.0
+    rounding = 1e-15  # A: the charge of a current that dies at once is a difference of equal numbers
+    assert mean * current >= -rounding * abs(current)
     assert drawn == pytest.approx(-abs(mean))
 
 
