@@ -58,7 +58,7 @@ def _status(options: Options) -> int:
             return REFUSED
         except HilbedError as error:
             print(error, file=sys.stderr)
-            return BROKEN if options.command is _run else REFUSED
+            return BROKEN if options.command in (_run, _sweep, _bench) else REFUSED
         except BrokenPipeError:
             raise
         except OSError as error:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
+import signal
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from itertools import product
 from typing import Any, NamedTuple
 
 from hilbed.console import end_progress, progress, quiet_pipe
 from hilbed.scenario.load import load
-from hilbed.types import ScenarioError
+from hilbed.types import HilbedError, ScenarioError
 
 Settings = tuple[str, ...]
 
@@ -60,7 +61,7 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
     todo = [Job(scenario, variant, seed) for variant in variants for seed in numbers]
     workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
+    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
         results = run_all(todo, pool)
     tables = {variant: tabulate([r for r in results if r.job.settings == variant]) for variant in variants}
     with quiet_pipe():
@@ -108,12 +109,23 @@ def run_all(jobs: Sequence[Job], pool: Executor) -> list[Result]:
     try:
         for done, _ in enumerate(as_completed(futures), 1):
             progress(f"sweep: {done} of {len(futures)} runs")
+        return [future.result() for future in futures]
     except KeyboardInterrupt:
+        for process in multiprocessing.active_children():
+            process.terminate()  # what they were at is of no use any more
         pool.shutdown(wait=False, cancel_futures=True)
         raise
+    except BrokenExecutor:
+        raise HilbedError(
+            "a process of the sweep has ended before its run: killed, or out of memory?"
+        ) from None
     finally:
         end_progress()
-    return [future.result() for future in futures]
+
+
+def _deaf() -> None:
+    """Leaves Ctrl-C, which comes to every process of a terminal, to the one that leads the sweep."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def run_job(job: Job) -> Result:

@@ -97,3 +97,16 @@ def test_a_full_disk_behind_standard_output_is_no_traceback() -> None:
     with Path("/dev/full").open("w") as full:
         ended = subprocess.run([*HILBED, "list"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (ended.returncode, ended.stderr) == (3, "output: No space left on device\n")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_ends_a_sweep_with_all_its_processes(tmp_path: Path, number: signal.Signals) -> None:
+    """Every process holds the pipe of standard error, so that its end is that of the last of them."""
+    command = [*HILBED, "sweep", "demo", "--seeds", "1..100", "--jobs", "2", "--set", "duration=600"]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path
+    )
+    time.sleep(4.0)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=30)
+    assert (process.returncode, out, err) == (2, "", "interrupted\n")
