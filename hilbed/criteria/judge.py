@@ -49,6 +49,7 @@ def _measured(
         chosen = window(signals, criterion.start, end)
         if not any(len(chosen[time]) for time in ("t", "tick/t") if time in chosen):
             raise Missing(f"the run has no rows from {criterion.start:g} to {end:g} s")
-        return measure(chosen, metric_of(name, criterion), criterion.drive), ""
+        least = criterion.min is not None
+        return measure(chosen, metric_of(name, criterion), criterion.drive, least), ""
     except Missing as missing:
         return nan, str(missing)

@@ -69,10 +69,11 @@ DRIVE_METRICS: dict[str, Metric] = {
 METRICS: dict[str, Metric] = RUN_METRICS | DRIVE_METRICS
 
 
-def measure(signals: Signals, name: str, drive: str | None = None) -> float:
+def measure(signals: Signals, name: str, drive: str | None = None, least: bool = False) -> float:
     """Returns a metric of the run; a drive's without its name is the largest over the drives that have it.
 
-    Raises Missing, with the reason, where the run cannot give the number.
+    least: the smallest instead, which is the worst one where the limit is a lower one. Raises Missing, with
+    the reason, where the run cannot give the number.
     """
     if name in RUN_METRICS:
         return RUN_METRICS[name].of(signals)
@@ -86,7 +87,7 @@ def measure(signals: Signals, name: str, drive: str | None = None) -> float:
             problem = missing
     if not values:
         raise problem
-    return max(values)
+    return min(values) if least else max(values)
 
 
 def all_metrics(signals: Signals) -> dict[str, float]:

@@ -48,7 +48,33 @@ def read_urdf(path: Path) -> Element:
         ) from None
     if root.tag != "robot":
         raise ScenarioError(f"{path}: the outermost element is <{root.tag}>, a URDF has <robot>")
+    _check_tree(path, root)
     return root
+
+
+def _check_tree(path: Path, root: Element) -> None:
+    """Sees to it that joints make one tree of the links: PyBullet does not survive anything else."""
+    links = [str(link.get("name")) for link in root.iterfind("link")]
+    children = [_end(path, joint, "child", links) for joint in root.iterfind("joint")]
+    parents = [_end(path, joint, "parent", links) for joint in root.iterfind("joint")]
+    for names, what in ((links, "links are called"), (children, "joints lead to")):
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise ScenarioError(f"{path}: two {what} {twice[0]}")
+    roots = [link for link in links if link not in children]
+    if len(roots) != 1:
+        raise ScenarioError(f"{path}: one link has to carry all the others; no joint leads to: {roots}")
+    for link in roots:  # grows while it is walked
+        roots += [child for parent, child in zip(parents, children, strict=True) if parent == link]
+    if ring := sorted(set(links) - set(roots)):
+        raise ScenarioError(f"{path}: the joints go round in a ring: {', '.join(ring)}")
+
+
+def _end(path: Path, joint: Element, end: str, links: list[str]) -> str:
+    element = joint.find(end)
+    link = "" if element is None else element.get("link", "")
+    if link not in links:
+        raise ScenarioError(f"{path}: joint {joint.get('name')} has no {end} link")
+    return link
 
 
 def diffdrive(path: Path, radius: float, track: float) -> Body:

@@ -153,6 +153,7 @@ def test_the_worst_drive_counts_unless_one_is_named() -> None:
     assert measure(run, "speed_rms_error") == pytest.approx(2.0)
     assert measure(run, "speed_rms_error", "left") == pytest.approx(1.0)
     assert measure(run, "right.speed_rms_error") == pytest.approx(2.0)
+    assert measure(run, "speed_rms_error", least=True) == pytest.approx(1.0)  # under a lower limit
 
 
 def test_bus_load_is_the_part_of_time_with_frames() -> None:
