@@ -30,6 +30,9 @@ def bench(scenario: str) -> int:
         outcome = perform(loaded, RunFolder(Path(folder) / "run"), separate=beside)
     memory, child = _peak(resource.RUSAGE_SELF), _peak(resource.RUSAGE_CHILDREN)
     verdict = outcome.verdict
+    if not verdict["sim_time"]:
+        print(f"{loaded.name}: {verdict['reason']}", file=sys.stderr)
+        return outcome.status
     print(_table(loaded.name, verdict, beside))
     print(f"peak memory: {memory:.0f} MB, of the camera's process {child:.0f} MB")
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
