@@ -73,34 +73,38 @@ class Port(Bus, Protocol):
     def accept(self, identifiers: Collection[int]) -> None: ...
 
 
-Attach: TypeAlias = Callable[[str, Callable[[Nanos, Frame], None]], Port]
-"""Puts a node on the bus, by name and by what it does with a frame."""
+Attach: TypeAlias = Callable[[str], Port]
+"""Puts a node on the bus, by name."""
 
 
 class Axis:
-    """One drive from its node on the bus to its shaft."""
+    """One drive from its node on the bus to its shaft.
+
+    Its firmware is one loop of a kilohertz: at the start of a tick it heeds the frames that have come since
+    the last one, then it reads its pins.
+    """
 
     __slots__ = ("_outbox", "encoder", "firmware", "name", "port", "train")
 
     def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
         self.name = name
-        self.port = attach(name, self.on_frame)
+        self.port = attach(name)
         self.firmware = Drive(node, self.port.accept)
         self._outbox = cast("list[Frame]", self.firmware.outbox)  # frames with the same fields
         self.train = train
         self.encoder = encoder
 
-    def on_frame(self, t: Nanos, frame: Frame) -> None:
-        """Hands a frame to the firmware and sends what it answers."""
-        self.firmware.on_frame(t, frame)
-        if self._outbox:
-            self.flush(t)
-
-    def flush(self, t: Nanos) -> None:
-        """Sends what the firmware has put into its outbox."""
-        for frame in self._outbox:
-            self.port.send(t, frame)
-        self._outbox.clear()
+    def tick(self, t: Nanos, angle: float, current: int, supply: int) -> int:
+        """Runs the firmware's tick at `t` and returns the duty in Q15; angle: rad, of the wheel."""
+        firmware, port, outbox = self.firmware, self.port, self._outbox
+        for _, frame in port.recv(t):
+            firmware.on_frame(t, frame)
+        duty = firmware.tick(t, self.encoder.sample(angle), current, supply)
+        if outbox:
+            for frame in outbox:
+                port.send(t, frame)
+            outbox.clear()
+        return duty
 
 
 class SimulatedPlant:
@@ -143,8 +147,7 @@ class SimulatedPlant:
         volts = pins.supply(self._supply.voltage(0.0, 0.0))
         for t in range(start, end, self._tick):
             for axis, angle in zip(self._axes, self._world.angles, strict=True):
-                axis.firmware.tick(t, axis.encoder.sample(angle), 0, volts)
-                axis.flush(t)
+                axis.tick(t, angle, 0, volts)
             self._wire.advance(t + self._tick)
 
     def start(self) -> None:
@@ -177,11 +180,7 @@ class SimulatedPlant:
         torques, duties, currents, references, drawn = [], [], [], [], 0.0
         for axis, angle, speed in zip(self._axes, world.angles, world.speeds, strict=True):
             firmware, train = axis.firmware, axis.train
-            duty = pins.duty(
-                firmware.tick(t, axis.encoder.sample(angle), pins.current(train.current), volts_pin)
-            )
-            if firmware.outbox:
-                axis.flush(t)
+            duty = pins.duty(axis.tick(t, angle, pins.current(train.current), volts_pin))
             torques.append(train.step(duty, firmware.bridge_enabled, volts, speed))
             duties.append(duty)
             currents.append(train.current)
