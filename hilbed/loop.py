@@ -37,12 +37,13 @@ def think(rig: Rig, t: Nanos) -> Cycle:
     readings = [reading for sensor in rig.sensors for reading in sensor.read(t)]
     start = perf_counter()
     estimate = rig.estimator.step(t, odometry, readings)
+    mean = estimate.mean.tolist()
+    if not isfinite(sum(mean) + sum(map(sum, estimate.covariance.tolist()))):
+        raise Diverged(f"t = {seconds(t):.3f} s: the estimate is not finite ({mean})")
     thought = perf_counter()
     command = rig.controller.step(t, estimate)
     rig.cost.controller += perf_counter() - thought
     rig.cost.estimator += thought - start
-    if not isfinite(estimate.mean.sum() + estimate.covariance.sum()):
-        raise Diverged(f"t = {seconds(t):.3f} s: the estimate is not finite ({estimate.mean.tolist()})")
     return Cycle(t, truth, odometry, readings, estimate, command)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import copysign, cos, isfinite, sin
+from math import copysign, cos, sin
 from typing import Annotated, Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from hilbed.angles import wrap
 from hilbed.clock import seconds
 from hilbed.ports import Reference
 from hilbed.spec import Listed, Positive, Spec
-from hilbed.types import Array, Command, Diverged, Estimate, Nanos, Pose
+from hilbed.types import Array, Command, Estimate, Nanos, Pose
 
 Row = tuple[float, float, float]
 Weight = Annotated[float, Field(ge=1e-4, le=1e4)]
@@ -81,10 +81,8 @@ class Lqr:
         self._gain(*reference.at(0)[1:])  # brings scipy in before the first cycle
 
     def step(self, t: Nanos, estimate: Estimate) -> Command:
-        """Returns the command for the period from `t`; raises Diverged if the estimate is not finite."""
+        """Returns the command for the period from `t`."""
         x, y, yaw = estimate.mean.tolist()
-        if not isfinite(x + y + yaw):
-            raise Diverged(f"controller: the estimate is not finite at t = {seconds(t):.3f} s")
         pose, v, w = self._reference.at(t)
         ex, ey, turn = body_error(pose, Pose(x, y, yaw))
         (vx, vy, vt), (wx, wy, wt) = self._gain(v, w)

@@ -7,14 +7,14 @@ from filterpy.kalman import ExtendedKalmanFilter
 
 from hilbed.angles import wrap
 from hilbed.estimation.measurement import Prediction
-from hilbed.estimation.motion import OdometryModel, motion, symmetric
+from hilbed.estimation.motion import OdometryModel, predicted, symmetric
 from hilbed.types import Array
 
 
 class PoseFilter(ExtendedKalmanFilter):  # type: ignore[misc]
     """State (3,) x, y (m), yaw (rad); scalar measurements, one after the other, in Joseph's form.
 
-    `predict_update` is not for use: filterpy stores the posterior of the last step as its prior.
+    `predict` and `predict_update` are not for use: the motion is nonlinear, `move` takes their place.
     """
 
     def __init__(self, mean: Array, covariance: Array) -> None:
@@ -27,13 +27,7 @@ class PoseFilter(ExtendedKalmanFilter):  # type: ignore[misc]
 
     def move(self, distance: float, turn: float, model: OdometryModel) -> None:
         """Predicts by an odometry increment (m, rad)."""
-        change, self.F, self.Q = motion(float(self.x[2]), distance, turn, model)
-        self.predict(change)
-        self.P = symmetric(self.P)
-
-    def predict_x(self, u: Array) -> None:
-        """Moves the state by `u`; the motion model is nonlinear, so filterpy's F x + B u is replaced."""
-        self.x = _wrapped(self.x + u)
+        self.x, self.P = predicted(self.x, self.P, (distance, turn), model)
 
     def spread(self, expected: Prediction) -> float:
         """Returns the variance H P Hᵀ of a predicted reading."""

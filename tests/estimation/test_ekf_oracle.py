@@ -7,9 +7,9 @@ from filterpy.kalman import ExtendedKalmanFilter
 
 from hilbed.estimation.ekf import Ekf
 from hilbed.estimation.measurement import MODELS
-from hilbed.estimation.motion import OdometryModel, motion
+from hilbed.estimation.motion import OdometryModel
 from hilbed.estimation.specs import EkfSpec, OdometrySpec
-from hilbed.types import Array, Pose
+from hilbed.types import Array, Odometry, Pose
 from tests.estimation.experiment import BEACONS, START, Errors, Step, experiment, sight
 
 MODEL = OdometryModel()
@@ -34,21 +34,27 @@ def numeric_gradient(kind: str, x: Array, beacon: tuple[float, float]) -> Array:
     return np.array([[np.remainder(a - b + np.pi, 2 * np.pi) - np.pi for a, b in pairs]]) / (2 * h)
 
 
+def textbook_motion(yaw: float, odometry: Odometry) -> tuple[Array, Array, Array]:
+    """Returns the change of state, its Jacobian and its noise covariance."""
+    ds, turn = odometry.distance, odometry.turn
+    a = yaw + turn / 2
+    F = np.eye(3)
+    F[:2, 2] = -ds * np.sin(a), ds * np.cos(a)
+    G = np.array([[np.cos(a), F[0, 2] / 2], [np.sin(a), F[1, 2] / 2], [0, 1]])
+    variances = (
+        MODEL.distance_noise**2 * ds,
+        MODEL.heading_noise**2 * ds + MODEL.turn_noise**2 * abs(turn),
+    )
+    return np.array((ds * np.cos(a), ds * np.sin(a), turn)), F, G @ np.diag(variances) @ G.T
+
+
 def run_numpy(steps: list[Step]) -> tuple[Array, Array]:
     """The textbook filter with numeric Jacobians; the short form of the covariance."""
     x, P, rows = np.array(START), np.diag([1e-4] * 3), []
     for step in steps:
-        ds, turn = step.odometry.distance, step.odometry.turn
-        a = x[2] + turn / 2
-        F = np.eye(3)
-        F[:2, 2] = -ds * np.sin(a), ds * np.cos(a)
-        G = np.array([[np.cos(a), F[0, 2] / 2], [np.sin(a), F[1, 2] / 2], [0, 1]])
-        variances = (
-            MODEL.distance_noise**2 * ds,
-            MODEL.heading_noise**2 * ds + MODEL.turn_noise**2 * abs(turn),
-        )
-        x = x + np.array((ds * np.cos(a), ds * np.sin(a), turn))
-        P = F @ P @ F.T + G @ np.diag(variances) @ G.T
+        change, F, Q = textbook_motion(x[2], step.odometry)
+        x = x + change
+        P = F @ P @ F.T + Q
         for reading in step.readings:
             beacon = BEACONS[reading.beacon or 0]
             H = numeric_gradient(reading.kind, x, beacon)
@@ -74,7 +80,7 @@ def test_equals_filterpy_by_hand() -> None:
     plain = ExtendedKalmanFilter(3, 1)
     plain.x, plain.P = np.array(START), np.diag([1e-4] * 3)
     for step in STEPS:
-        change, plain.F, plain.Q = motion(plain.x[2], step.odometry.distance, step.odometry.turn, MODEL)
+        change, plain.F, plain.Q = textbook_motion(plain.x[2], step.odometry)
         before = plain.x + change
         plain.predict()
         plain.x = before

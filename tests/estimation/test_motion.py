@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi
 
 import numpy as np
@@ -7,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hilbed.estimation.motion import OdometryModel, motion
+from hilbed.angles import wrap
+from hilbed.estimation.motion import OdometryModel, predicted
 from hilbed.poses import moved
-from hilbed.types import Pose
+from hilbed.types import Array, Pose
 from tests.estimation.experiment import exact_arc
 
 angles = st.floats(-3, 3)
@@ -30,25 +32,38 @@ def test_small_increments_follow_the_exact_arc(yaw: float, way: float, turn: flo
     )
 
 
-@given(angles, ways, angles)
-def test_jacobian_is_the_derivative_of_the_change(yaw: float, way: float, turn: float) -> None:
-    model = OdometryModel(direction=0.1, distance_scale=1.1, turn_scale=0.9)
-    step, h = motion(yaw, way, turn, model), 1e-6
-    by_yaw = (motion(yaw + h, way, turn, model).change - motion(yaw - h, way, turn, model).change) / (2 * h)
-    np.testing.assert_allclose(step.F - np.eye(3), np.outer(by_yaw, (0, 0, 1)), atol=1e-8)
+MODEL = OdometryModel(0.1, 1.1, 0.9, distance_noise=0.3, heading_noise=0.2, turn_noise=0.1)
+NO_DOUBT = np.zeros((3, 3))
+
+
+def slope(function: Callable[[float], Array]) -> Array:
+    """Returns the derivative at 0; yaw may wrap in between."""
+    change = function(1e-6) - function(-1e-6)
+    change[2] = wrap(change[2])
+    return change / 2e-6
 
 
 @given(angles, ways, angles)
-def test_noise_is_that_of_way_and_turn_carried_over(yaw: float, way: float, turn: float) -> None:
-    model, h = OdometryModel(distance_noise=0.3, heading_noise=0.2, turn_noise=0.1), 1e-6
-    by_way = (motion(yaw, way + h, turn, model).change - motion(yaw, way - h, turn, model).change) / (2 * h)
-    by_turn = (motion(yaw, way, turn + h, model).change - motion(yaw, way, turn - h, model).change) / (2 * h)
-    expected = 0.09 * abs(way) * np.outer(by_way, by_way)
-    expected += (0.04 * abs(way) + 0.01 * abs(turn)) * np.outer(by_turn, by_turn)
-    np.testing.assert_allclose(motion(yaw, way, turn, model).Q, expected, atol=1e-8)
+def test_covariance_is_carried_by_the_derivatives_of_the_mean(yaw: float, way: float, turn: float) -> None:
+    """F P Fᵀ + G V Gᵀ with F and G from differences of the predicted mean."""
+    root = np.array([[0.3, 0.0, 0.0], [0.1, 0.2, 0.0], [-0.2, 0.1, 0.4]])
+    before, start = root @ root.T, np.array((1.0, -2.0, yaw))
+    _, after = predicted(start, before, (way, turn), MODEL)
+
+    def mean(offset: Array, ds: float = 0.0, dturn: float = 0.0) -> Array:
+        return predicted(start + offset, NO_DOUBT, (way + ds, turn + dturn), MODEL)[0]
+
+    F = np.column_stack([slope(lambda h, axis=axis: mean(h * axis)) for axis in np.eye(3)])
+    by_way, by_turn = slope(lambda h: mean(np.zeros(3), ds=h)), slope(lambda h: mean(np.zeros(3), dturn=h))
+    ds, turned = 1.1 * abs(way), 0.9 * abs(turn)
+    noise = 0.09 * ds * np.outer(by_way, by_way) / 1.1**2
+    noise += (0.04 * ds + 0.01 * turned) * np.outer(by_turn, by_turn) / 0.9**2
+    np.testing.assert_allclose(after, F @ before @ F.T + noise, atol=1e-8)
+    np.testing.assert_array_equal(after, after.T)
 
 
 def test_a_step_cut_in_many_gains_no_doubt_of_yaw() -> None:
-    model = OdometryModel()
-    once = motion(0.2, 0.4, 0.1, model).Q[2, 2]
-    assert sum(motion(0.2, 0.04, 0.01, model).Q[2, 2] for _ in range(10)) == pytest.approx(once)
+    def doubt(way: float, turn: float) -> float:
+        return float(predicted(np.array((0.0, 0.0, 0.2)), NO_DOUBT, (way, turn), OdometryModel())[1][2, 2])
+
+    assert sum(doubt(0.04, 0.01) for _ in range(10)) == pytest.approx(doubt(0.4, 0.1))

@@ -12,12 +12,15 @@ from hilbed.types import Diverged, Estimate, Nanos, Odometry, Reading
 from tests.loop.fakes import Adder, rig
 
 
+@pytest.mark.parametrize("number", [np.nan, np.inf])
 @pytest.mark.parametrize("bad", ["mean", "covariance"])
-def test_an_estimate_that_is_not_finite_ends_the_run(bad: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_estimate_that_is_not_finite_ends_the_run(
+    bad: str, number: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def lost(_: Adder, t: Nanos, __: Odometry, ___: Sequence[Reading]) -> Estimate:
         mean, covariance = np.zeros(3), np.eye(3)
         if t == 20:
-            {"mean": mean, "covariance": covariance}[bad][..., 1] = np.nan
+            {"mean": mean, "covariance": covariance}[bad][..., 1] = number
         return Estimate(t, mean, covariance)
 
     monkeypatch.setattr(Adder, "step", lost)
