@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from hilbed import rng
 from hilbed.build.bench import BOOT, Bench
-from hilbed.build.minds import Surroundings, make_controller, make_estimator
+from hilbed.build.known import nodes_of, start_of, surroundings
+from hilbed.build.minds import make_controller, make_estimator
 from hilbed.can.base import CanBase
 from hilbed.can.channels import lend
 from hilbed.can.master import Master
 from hilbed.can.node import Node
-from hilbed.can.specs import resolve
 from hilbed.can.wire import Wire
 from hilbed.clock import MILLISECOND, nanos, seconds
 from hilbed.cost import Cost
@@ -28,14 +28,14 @@ from hilbed.plant.simulated import Axis, SimulatedPlant
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.plant.supply import Supply
 from hilbed.plant.urdf import Body, diffdrive, moved_inertia
-from hilbed.ports import Reference, Witness
+from hilbed.ports import Witness
 from hilbed.robots import ROBOTS
 from hilbed.scenario import files
 from hilbed.scenario.load import Loaded
 from hilbed.scenario.model import Scenario
 from hilbed.sensors.camera import Camera, open_eye
 from hilbed.sensors.eye import Eye
-from hilbed.types import Nanos, Pose
+from hilbed.types import Nanos
 
 STANDSTILL: Nanos = 500 * MILLISECOND
 """How long the bench goes on after the last cycle, so that the drives come to rest."""
@@ -48,7 +48,7 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> B
     robot = ROBOTS[scenario.robot.kind](scenario.robot)
     reference = None if scenario.reference is None else scenario.reference.build()
     start, period, tick = start_of(scenario, reference), nanos(scenario.period), nanos(spec.tick)
-    nodes = tuple(_told(node, spec) for node in resolve(scenario.nodes, robot.drives))
+    nodes = nodes_of(scenario, spec, robot.drives)
 
     effects = Effects([spec.friction] * len(robot.drives))
     schedule = _schedule(scenario, robot.drives, effects)
@@ -68,7 +68,7 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> B
     rig = Rig(
         base,
         sensors,
-        make_estimator(scenario.estimator, _known(scenario, spec, start)),
+        make_estimator(scenario.estimator, surroundings(scenario, spec, start)),
         make_controller(scenario.controller, reference, period),
         plant,
         period,
@@ -114,29 +114,6 @@ class _Hands:
 
     def events(self) -> list[str]:
         return [f"t = {seconds(e.t):.3f} s: {e.drive}: {e.text}" for e in self.base.ears.events]
-
-
-def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
-    """Returns where the robot stands at t = 0: as told, else where the reference starts."""
-    if scenario.robot.start is not None:
-        return Pose(*scenario.robot.start)
-    return Pose(0.0, 0.0, 0.0) if reference is None else reference.at(0).pose
-
-
-def _known(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings:
-    mounts = [sensor.mount[:2] for sensor in scenario.sensors.values()]
-    return Surroundings([beacon.at for beacon in spec.beacons], start, mounts[0] if mounts else (0.0, 0.0))
-
-
-def _told(node: Node, spec: SimulatedSpec) -> Node:
-    """Returns a node that is told at boot what it drives, where the scenario does not say otherwise."""
-    plate = {
-        "counts_per_turn": spec.encoder.resolution,
-        "resistance": spec.motor.resistance,
-        "back_emf": spec.motor.back_emf * spec.gear.ratio,
-    }
-    known = {key: value for key, value in plate.items() if key in node.table.settings}
-    return replace(node, settings={**known, **node.settings})
 
 
 def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:

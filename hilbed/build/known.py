@@ -1,0 +1,43 @@
+"""What both a simulated bench and a replay know from the scenario: start, beacons, drives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from hilbed.build.minds import Surroundings
+from hilbed.can.node import Node
+from hilbed.can.specs import resolve
+from hilbed.plant.specs import SimulatedSpec
+from hilbed.ports import Reference
+from hilbed.scenario.model import Scenario
+from hilbed.types import Pose
+
+
+def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
+    """Returns where the robot stands at t = 0: as told, else where the reference starts."""
+    if scenario.robot.start is not None:
+        return Pose(*scenario.robot.start)
+    return Pose(0.0, 0.0, 0.0) if reference is None else reference.at(0).pose
+
+
+def surroundings(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings:
+    """Returns what an estimator knows from the start."""
+    mounts = [sensor.mount[:2] for sensor in scenario.sensors.values()]
+    return Surroundings([beacon.at for beacon in spec.beacons], start, mounts[0] if mounts else (0.0, 0.0))
+
+
+def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> tuple[Node, ...]:
+    """Returns the drives on the bus in the robot's order; ScenarioError with everything that is wrong."""
+    return tuple(_told(node, spec) for node in resolve(scenario.nodes, drives))
+
+
+def _told(node: Node, spec: SimulatedSpec) -> Node:
+    """Returns a node that is told at boot what it drives, where the scenario does not say otherwise."""
+    plate = {
+        "counts_per_turn": spec.encoder.resolution,
+        "resistance": spec.motor.resistance,
+        "back_emf": spec.motor.back_emf * spec.gear.ratio,
+    }
+    known = {key: value for key, value in plate.items() if key in node.table.settings}
+    return replace(node, settings={**known, **node.settings})
