@@ -18,7 +18,10 @@ _NS = 1e-9
 
 
 class Readings(NamedTuple):
-    """Growing columns of one kind of reading; measured and true hold `size` numbers a reading."""
+    """Growing columns of one kind of reading; measured, true and std hold `size` numbers a reading.
+
+    beacons: the true one, then the one that the sensor took it for.
+    """
 
     size: int
     stamps: array[float]
@@ -106,8 +109,9 @@ class Columns:
             if reading.delivered * _NS <= last:
                 kind = self._readings.setdefault(reading.kind, _empty(len(reading.value)))
                 kind.stamps.extend((reading.t * _NS, reading.delivered * _NS))
-                kind.beacons.append(witnessed.beacon)
-                kind.values.extend(_padded(reading.value, kind.size) + _padded(witnessed.true, kind.size))
+                kind.beacons.extend((witnessed.beacon, -1 if reading.beacon is None else reading.beacon))
+                for numbers in (reading.value, witnessed.true, reading.std):
+                    kind.values.extend(_padded(numbers, kind.size))
         self._waiting.clear()
         return {
             name: column
@@ -156,15 +160,18 @@ def _plant(t: Array, ticks: Mapping[str, Array], tick: float) -> dict[str, np.nd
 
 def _columns_of(kind: str, readings: Readings) -> dict[str, np.ndarray]:
     stamps = np.array(readings.stamps).reshape(-1, 2)
-    values = np.array(readings.values).reshape(-1, 2, readings.size)
+    beacons = np.array(readings.beacons, dtype=np.int64).reshape(-1, 2)
+    values = np.array(readings.values).reshape(-1, 3, readings.size)
     if readings.size == 1:
         values = values[:, :, 0]
     return {
         f"{kind}/t": stamps[:, 0].copy(),
         f"{kind}/delivered": stamps[:, 1].copy(),
-        f"{kind}/beacon": np.array(readings.beacons, dtype=np.int64),
+        f"{kind}/beacon": beacons[:, 0].copy(),
         f"{kind}/measured": values[:, 0].copy(),
         f"{kind}/true": values[:, 1].copy(),
+        f"{kind}/std": values[:, 2].copy(),
+        f"{kind}/claimed": beacons[:, 1].copy(),
     }
 
 
