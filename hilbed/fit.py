@@ -22,7 +22,7 @@ from hilbed.estimation.calibration import (
     witnessed,
 )
 from hilbed.estimation.consistency import nees, pose_error
-from hilbed.estimation.motion import OdometryModel
+from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.estimation.specs import EkfSpec, OdometrySpec, ReadingSpec
 from hilbed.types import Odometry, Pose, Reading, ScenarioError
 

@@ -3,36 +3,19 @@
 from __future__ import annotations
 
 from math import copysign, cos, sin
-from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
 
 from hilbed.angles import wrap
 from hilbed.clock import seconds
+from hilbed.control.lqr_spec import LqrSpec
 from hilbed.ports import Reference
-from hilbed.spec import Listed, Positive, Spec
 from hilbed.types import Array, Command, Estimate, Nanos, Pose
 
 Row = tuple[float, float, float]
-Weight = Annotated[float, Field(ge=1e-4, le=1e4)]
 
 SLOWEST = 0.05  # m/s: an axle that stands cannot be steered aside, so gains are those of this speed
 GRID = 0.05  # m/s and rad/s: reference speeds are rounded to it before a gain is solved and kept
-
-
-class LqrSpec(Spec):
-    """Weights in Bryson's form: the error and the effort that are felt to be equally bad.
-
-    error: along m, across m, yaw rad; effort: speed m/s, yaw rate rad/s; max_speed m/s and max_turn_rate
-    rad/s limit the command. The defaults give Q = 400 I, R = 400 I.
-    """
-
-    kind: Literal["lqr"] = "lqr"
-    error: Listed[tuple[Weight, Weight, Weight]] = (0.05, 0.05, 0.05)
-    effort: Listed[tuple[Weight, Weight]] = (0.05, 0.05)
-    max_speed: Positive = 1.0
-    max_turn_rate: Annotated[float, Field(gt=0, le=20)] = 2.0
 
 
 def error_model(v: float, w: float) -> tuple[Array, Array]:

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from importlib import import_module
 from typing import NamedTuple
 
-from hilbed.criteria import bus, consistency, drives, pose
 from hilbed.criteria.signals import Missing, Signals
 
 
 class Metric(NamedTuple):
-    """How a number is taken from the signals of a run; its description is the function's docstring."""
+    """How a number is taken from the signals of a run: by the function of this name in a module beside.
 
-    of: Callable[..., float]
+    The module is imported when it is asked for: to know the names of the metrics takes no numpy.
+    """
+
+    module: str
+    name: str
     unit: str
+
+    @property
+    def of(self) -> Callable[..., float]:
+        """The function; its docstring is the metric's description."""
+        function: Callable[..., float] = getattr(import_module(f"hilbed.criteria.{self.module}"), self.name)
+        return function
 
     @property
     def about(self) -> str:
@@ -21,50 +31,64 @@ class Metric(NamedTuple):
         return (self.of.__doc__ or "").partition("\n")[0]
 
 
-RUN_METRICS: dict[str, Metric] = {
-    "estimate_position_rms": Metric(pose.estimate_position_rms, "m"),
-    "estimate_position_max": Metric(pose.estimate_position_max, "m"),
-    "estimate_position_final": Metric(pose.estimate_position_final, "m"),
-    "estimate_yaw_rms": Metric(pose.estimate_yaw_rms, "rad"),
-    "estimate_yaw_final": Metric(pose.estimate_yaw_final, "rad"),
-    "odometry_position_rms": Metric(pose.odometry_position_rms, "m"),
-    "odometry_position_final": Metric(pose.odometry_position_final, "m"),
-    "odometry_yaw_rms": Metric(pose.odometry_yaw_rms, "rad"),
-    "odometry_over_estimate": Metric(pose.odometry_over_estimate, ""),
-    "cross_track_rms": Metric(pose.cross_track_rms, "m"),
-    "cross_track_max": Metric(pose.cross_track_max, "m"),
-    "reference_distance_rms": Metric(pose.reference_distance_rms, "m"),
-    "reference_distance_max": Metric(pose.reference_distance_max, "m"),
-    "reference_distance_final": Metric(pose.reference_distance_final, "m"),
-    "reference_yaw_rms": Metric(pose.reference_yaw_rms, "rad"),
-    "nees_mean": Metric(consistency.nees_mean, ""),
-    "nees_position_mean": Metric(consistency.nees_position_mean, ""),
-    "nis_mean": Metric(consistency.nis_mean, ""),
-    "accepted_fraction": Metric(consistency.accepted_fraction, ""),
-    "azimuth_count": Metric(consistency.azimuth_count, ""),
-    "azimuth_spurious": Metric(consistency.azimuth_spurious, ""),
-    "azimuth_bias_mdeg": Metric(consistency.azimuth_bias_mdeg, "mdeg"),
-    "azimuth_std_mdeg": Metric(consistency.azimuth_std_mdeg, "mdeg"),
-    "azimuth_rms_mdeg": Metric(consistency.azimuth_rms_mdeg, "mdeg"),
-    "range_bias": Metric(consistency.range_bias, "m"),
-    "range_std": Metric(consistency.range_std, "m"),
-    "bus_load": Metric(bus.bus_load, ""),
-    "bus_load_max": Metric(bus.bus_load_max, ""),
-    "bus_frames": Metric(bus.bus_frames, ""),
-    "bus_latency_mean": Metric(bus.bus_latency_mean, "s"),
-    "bus_latency_max": Metric(bus.bus_latency_max, "s"),
+def _metrics(module: str, units: Mapping[str, str]) -> dict[str, Metric]:
+    return {name: Metric(module, name, unit) for name, unit in units.items()}
+
+
+_RUN_UNITS = {
+    "pose": {
+        "estimate_position_rms": "m",
+        "estimate_position_max": "m",
+        "estimate_position_final": "m",
+        "estimate_yaw_rms": "rad",
+        "estimate_yaw_final": "rad",
+        "odometry_position_rms": "m",
+        "odometry_position_final": "m",
+        "odometry_yaw_rms": "rad",
+        "odometry_over_estimate": "",
+        "cross_track_rms": "m",
+        "cross_track_max": "m",
+        "reference_distance_rms": "m",
+        "reference_distance_max": "m",
+        "reference_distance_final": "m",
+        "reference_yaw_rms": "rad",
+    },
+    "consistency": {
+        "nees_mean": "",
+        "nees_position_mean": "",
+        "nis_mean": "",
+        "accepted_fraction": "",
+        "azimuth_count": "",
+        "azimuth_spurious": "",
+        "azimuth_bias_mdeg": "mdeg",
+        "azimuth_std_mdeg": "mdeg",
+        "azimuth_rms_mdeg": "mdeg",
+        "range_bias": "m",
+        "range_std": "m",
+    },
+    "bus": {
+        "bus_load": "",
+        "bus_load_max": "",
+        "bus_frames": "",
+        "bus_latency_mean": "s",
+        "bus_latency_max": "s",
+    },
+}
+_DRIVE_UNITS = {
+    "speed_rms_error": "rad/s",
+    "load_dip": "rad/s",
+    "load_recovery": "s",
+    "duty_chatter": "",
+    "step_overshoot": "",
+    "slip_max": "m/s",
+    "current_max": "A",
+    "duty_max": "",
 }
 
-DRIVE_METRICS: dict[str, Metric] = {
-    "speed_rms_error": Metric(drives.speed_rms_error, "rad/s"),
-    "load_dip": Metric(drives.load_dip, "rad/s"),
-    "load_recovery": Metric(drives.load_recovery, "s"),
-    "duty_chatter": Metric(drives.duty_chatter, ""),
-    "step_overshoot": Metric(drives.step_overshoot, ""),
-    "slip_max": Metric(drives.slip_max, "m/s"),
-    "current_max": Metric(drives.current_max, "A"),
-    "duty_max": Metric(drives.duty_max, ""),
+RUN_METRICS: dict[str, Metric] = {
+    name: metric for module, units in _RUN_UNITS.items() for name, metric in _metrics(module, units).items()
 }
+DRIVE_METRICS: dict[str, Metric] = _metrics("drives", _DRIVE_UNITS)
 
 METRICS: dict[str, Metric] = RUN_METRICS | DRIVE_METRICS
 

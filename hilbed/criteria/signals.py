@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
+if TYPE_CHECKING:
+    from typing import Any
 
-Column: TypeAlias = np.ndarray[Any, Any]
+    import numpy as np
+
+Column: TypeAlias = "np.ndarray[Any, Any]"
 
 
 class Missing(Exception):

@@ -5,14 +5,13 @@ from __future__ import annotations
 from math import inf
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field
 
 from hilbed.clock import nanos
 from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase, drawn
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import Finite, NonNegative, Point, Positive
-from hilbed.types import Nanos
+from hilbed.types import Nanos, Rng
 
 FASTEST = 10.0
 """m/s; no wheel gets to the edge of a patch sooner than at this speed."""
@@ -48,7 +47,7 @@ class Push(DisturbanceBase):
     length: Positive | None = 0.1
 
 
-def slip_patch(spec: SlipPatch, _: int, __: np.random.Generator) -> Disturbance:
+def slip_patch(spec: SlipPatch, _: int, __: Rng) -> Disturbance:
     """Returns the disturbance that changes friction under every wheel inside the rectangle."""
     (x0, x1), (y0, y1) = (sorted(pair) for pair in zip(spec.corner, spec.opposite, strict=True))
 
@@ -64,7 +63,7 @@ def slip_patch(spec: SlipPatch, _: int, __: np.random.Generator) -> Disturbance:
     return apply
 
 
-def wheel_radius(spec: WheelRadius, wheel: int, rng: np.random.Generator) -> Disturbance:
+def wheel_radius(spec: WheelRadius, wheel: int, rng: Rng) -> Disturbance:
     """Returns the disturbance that scales the rolling radius of the wheel with that index."""
     size = max(drawn(spec.size, spec.spread, rng), SMALLEST_WHEEL)
 
@@ -75,7 +74,7 @@ def wheel_radius(spec: WheelRadius, wheel: int, rng: np.random.Generator) -> Dis
     return apply
 
 
-def push(spec: Push, _: int, __: np.random.Generator) -> Disturbance:
+def push(spec: Push, _: int, __: Rng) -> Disturbance:
     """Returns the disturbance that pushes and turns the body."""
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-import numpy as np
 from pydantic import model_validator
 
 from hilbed.clock import seconds
 from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase, drawn
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import Finite, NonNegative, Positive
-from hilbed.types import Nanos
+from hilbed.types import Nanos, Rng
 
 IMPULSE_LENGTH = 0.02
 """s; an impulse without a length is a pulse this long, a blow that the 1 ms tick still resolves."""
@@ -47,7 +46,7 @@ class SupplySag(DisturbanceBase):
     spread: NonNegative = 0.0
 
 
-def load_torque(spec: LoadTorque, wheel: int, rng: np.random.Generator) -> Disturbance:
+def load_torque(spec: LoadTorque, wheel: int, rng: Rng) -> Disturbance:
     """Returns the disturbance that loads the wheel with that index."""
     size = drawn(spec.size, spec.spread, rng)
 
@@ -59,7 +58,7 @@ def load_torque(spec: LoadTorque, wheel: int, rng: np.random.Generator) -> Distu
     return apply
 
 
-def supply_sag(spec: SupplySag, _: int, rng: np.random.Generator) -> Disturbance:
+def supply_sag(spec: SupplySag, _: int, rng: Rng) -> Disturbance:
     """Returns the disturbance that lowers the supply."""
     size = drawn(spec.size, spec.spread, rng)
 

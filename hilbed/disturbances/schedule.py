@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-import numpy as np
-
 from hilbed.clock import nanos
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import NonNegative, Positive, Spec
-from hilbed.types import Nanos
+from hilbed.types import Nanos, Rng
 
 Disturbance: TypeAlias = Callable[[Nanos, Surroundings, Effects], Nanos]
 """Writes what it does at a time since its own start; returns for how long (ns) that stays the same."""
@@ -30,7 +28,7 @@ class DisturbanceBase(Spec):
     length: Positive | None = None
 
 
-def drawn(size: float, spread: float, rng: np.random.Generator) -> float:
+def drawn(size: float, spread: float, rng: Rng) -> float:
     """Returns a size for this run: normal round `size` with standard deviation `spread`, the same unit."""
     return size + spread * float(rng.standard_normal())
 

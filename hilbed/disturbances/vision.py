@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field
 
 from hilbed.disturbances.schedule import STEADY, Disturbance, DisturbanceBase
 from hilbed.effects import Effects, Surroundings
-from hilbed.types import Nanos
+from hilbed.types import Nanos, Rng
 
 
 class SpuriousAzimuths(DisturbanceBase):
@@ -25,7 +24,7 @@ class CameraLoss(DisturbanceBase):
     kind: Literal["camera_loss"] = "camera_loss"
 
 
-def spurious_azimuths(spec: SpuriousAzimuths, _: int, __: np.random.Generator) -> Disturbance:
+def spurious_azimuths(spec: SpuriousAzimuths, _: int, __: Rng) -> Disturbance:
     """Returns the disturbance that adds false azimuths to the frames."""
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:
@@ -35,7 +34,7 @@ def spurious_azimuths(spec: SpuriousAzimuths, _: int, __: np.random.Generator) -
     return apply
 
 
-def camera_loss(_: CameraLoss, __: int, ___: np.random.Generator) -> Disturbance:
+def camera_loss(_: CameraLoss, __: int, ___: Rng) -> Disturbance:
     """Returns the disturbance that blinds the camera."""
 
     def apply(_: Nanos, __: Surroundings, effects: Effects) -> Nanos:

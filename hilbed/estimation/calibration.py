@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hilbed.estimation.measurement import Point
-from hilbed.estimation.motion import OdometryModel
+from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.types import Array
 
 LEAST = 1e-3  # m/√m, rad/√m, rad/√rad: no odometer is better, and a filter must not believe so

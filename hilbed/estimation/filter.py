@@ -7,7 +7,8 @@ from filterpy.kalman import ExtendedKalmanFilter
 
 from hilbed.angles import wrap
 from hilbed.estimation.measurement import Prediction
-from hilbed.estimation.motion import OdometryModel, predicted, symmetric
+from hilbed.estimation.motion import predicted, symmetric
+from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.types import Array
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from hilbed.estimation.motion import OdometryModel
+from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.spec import Finite, Listed, NonNegative, Point, Positive, Spec
 
 Deviation = Annotated[float, Field(ge=1e-9, le=1e6)]

@@ -17,8 +17,6 @@ from hilbed.disturbances import DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.plant.chopper import Switched, periods
-from hilbed.plant.recorded import Recorded
-from hilbed.plant.recording import load
 from hilbed.plant.urdf import diffdrive
 from hilbed.robots import ROBOTS, RobotSpec
 from hilbed.scenario import files
@@ -135,6 +133,9 @@ def _body(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
 def _recording(plant: PlantSpec, duration: float, period: float, folder: Path) -> Problems:
     """What a recorded robot's file holds, and for how long; a file that is not there is told by `_files`."""
     if isinstance(plant, RecordedSpec):
+        from hilbed.plant.recorded import Recorded
+        from hilbed.plant.recording import load
+
         with suppress(ScenarioError):
             path = files.resolve(plant.file, folder)
             try:

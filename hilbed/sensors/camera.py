@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from math import nan, pi, radians
 from typing import Annotated, Literal, NamedTuple, Self
 
-import numpy as np
 from pydantic import Field, model_validator
 
 from hilbed.angles import wrap
@@ -20,10 +19,10 @@ from hilbed.sensors.faults import misses, noisy, spurious
 from hilbed.sensors.pan import make_pan
 from hilbed.sensors.pan_spec import FixedSpec, PanSpec
 from hilbed.spec import Finite, Fraction, Listed, NonNegative, Positive
-from hilbed.types import Nanos, Reading, Snapshot, Truth
+from hilbed.types import Image, Nanos, Reading, Rng, Snapshot, Truth
 from hilbed.vision.egl import LARGEST_FRAME
 from hilbed.vision.lens import LARGEST, SMALLEST, Lens
-from hilbed.vision.seams import Detection, Image
+from hilbed.vision.seams import Detection
 from hilbed.vision.truth import SPURIOUS
 
 Size = Annotated[int, Field(ge=SMALLEST, le=LARGEST)]
@@ -83,9 +82,7 @@ class Camera:
     recognise.
     """
 
-    def __init__(
-        self, spec: CameraSpec, eye: Eye, rng: np.random.Generator, effects: Effects, witness: Witness
-    ) -> None:
+    def __init__(self, spec: CameraSpec, eye: Eye, rng: Rng, effects: Effects, witness: Witness) -> None:
         self._spec, self._eye, self._rng = spec, eye, rng
         self._effects, self._witness, self._cost = effects, witness, eye.cost
         self._lens = spec.lens

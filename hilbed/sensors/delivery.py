@@ -6,12 +6,11 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Annotated
 
-import numpy as np
 from pydantic import Field
 
 from hilbed.clock import SECOND, nanos
 from hilbed.spec import Fraction, NonNegative, Spec
-from hilbed.types import Nanos, Reading
+from hilbed.types import Nanos, Reading, Rng
 
 
 class DeliverySpec(Spec):
@@ -29,7 +28,7 @@ class DeliverySpec(Spec):
 class Delivery:
     """The clock of one sensor and the readings that are on their way; `due`: when to take the next sample."""
 
-    def __init__(self, spec: DeliverySpec, rng: np.random.Generator) -> None:
+    def __init__(self, spec: DeliverySpec, rng: Rng) -> None:
         self._rate, self._latency, self._loss = spec.rate, nanos(spec.latency), spec.loss
         self._rng = rng
         self._count = 0

@@ -8,8 +8,8 @@ from typing import NamedTuple, Protocol, TypeAlias
 
 from hilbed.cost import Cost, perf_counter
 from hilbed.scene import BeaconSpec
-from hilbed.types import Pose
-from hilbed.vision.seams import Detection, Detector, Image, Renderer
+from hilbed.types import Image, Pose
+from hilbed.vision.seams import Detection, Detector, Renderer
 from hilbed.vision.truth import SPURIOUS, match, sights
 
 Mount = tuple[float, float, float]

@@ -5,20 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import hypot
 
-import numpy as np
-
+from hilbed.types import Rng
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import Detection
 
 _USUAL_STD = 0.02  # pixels: a false detection looks like a true one
 
 
-def misses(count: int, probability: float, rng: np.random.Generator) -> list[bool]:
+def misses(count: int, probability: float, rng: Rng) -> list[bool]:
     """Draws which of `count` detections are missed."""
     return (rng.random(count) < probability).tolist() if probability else [False] * count
 
 
-def noisy(detection: Detection, std: float, rng: np.random.Generator) -> Detection:
+def noisy(detection: Detection, std: float, rng: Rng) -> Detection:
     """Adds normal noise of `std` (rad) to a detection's azimuth and says so in its std."""
     if not std:
         return detection
@@ -26,9 +25,7 @@ def noisy(detection: Detection, std: float, rng: np.random.Generator) -> Detecti
     return detection._replace(azimuth=azimuth, std=hypot(detection.std, std))
 
 
-def spurious(
-    mean: float, lens: Lens, names: Sequence[int | None], rng: np.random.Generator
-) -> list[Detection]:
+def spurious(mean: float, lens: Lens, names: Sequence[int | None], rng: Rng) -> list[Detection]:
     """Draws false detections, Poisson in number, uniform over the field of view, claiming any of `names`."""
     if not mean:
         return []

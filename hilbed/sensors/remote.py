@@ -19,8 +19,7 @@ import numpy as np
 from hilbed.cost import Cost, perf_counter
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.eye import Glimpse, Ticket
-from hilbed.types import HilbedError, Pose
-from hilbed.vision.seams import Image
+from hilbed.types import HilbedError, Image, Pose
 
 if TYPE_CHECKING:
     from hilbed.sensors.camera import CameraSpec

@@ -19,8 +19,7 @@ import numpy as np
 from hilbed.cost import Cost
 from hilbed.sensors.camera import open_eye
 from hilbed.sensors.remote import EyeLost
-from hilbed.types import HilbedError
-from hilbed.vision.seams import Image
+from hilbed.types import HilbedError, Image
 
 _PROCESSOR = 36  # of the words after the name in /proc/PID/stat: where it ran last
 

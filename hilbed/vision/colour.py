@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hilbed.scene import COLOURS
-from hilbed.vision.seams import Image
+from hilbed.types import Image
 
 Labels = npt.NDArray[np.uint8]
 

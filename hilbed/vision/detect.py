@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from hilbed.scene import BeaconSpec
-from hilbed.types import Array
+from hilbed.types import Array, Image
 from hilbed.vision.colour import Palette
 from hilbed.vision.lens import Lens
 from hilbed.vision.runs import Indices, Runs, bounds, find_runs, gather
-from hilbed.vision.seams import Detection, Image
+from hilbed.vision.seams import Detection
 
 FEWEST_ROWS = 3
 ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a straight line, hardly ever more

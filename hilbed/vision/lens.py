@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import atan, degrees, pi, tan
 
-import numpy as np
-
 from hilbed.types import Array, ScenarioError
 
 SMALLEST, LARGEST = 16, 4096
@@ -48,6 +46,8 @@ class Lens:
     @property
     def matrix(self) -> Array:
         """The (3, 3) camera matrix as OpenCV takes it."""
+        import numpy as np
+
         return np.array([[self.focal, 0.0, self.cx], [0.0, self.focal, self.cy], [0.0, 0.0, 1.0]])
 
     def column(self, azimuth: float) -> float:

@@ -17,11 +17,10 @@ import numpy as np
 from hilbed.cost import Cost, perf_counter
 from hilbed.quiet import muted
 from hilbed.scene import COLOURS, BeaconSpec, Colour
-from hilbed.types import ScenarioError
+from hilbed.types import Image, ScenarioError
 from hilbed.vision import egl
 from hilbed.vision.cone import obj
 from hilbed.vision.lens import Lens
-from hilbed.vision.seams import Image
 
 with muted():
     import pybullet

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from hilbed.types import Image
 from hilbed.vision.colour import BACKGROUND, OTHER, Palette
-from hilbed.vision.seams import Image
 
 Indices = npt.NDArray[np.intp]
 

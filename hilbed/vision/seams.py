@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import NamedTuple, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
-Image: TypeAlias = npt.NDArray[np.uint8]
+from hilbed.types import Image
 
 
 class Detection(NamedTuple):

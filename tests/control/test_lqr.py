@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm, solve_continuous_are
 
-from hilbed.control.lqr import Lqr, LqrSpec, body_error, error_model, solve_gain
+from hilbed.control.lqr import Lqr, body_error, error_model, solve_gain
+from hilbed.control.lqr_spec import LqrSpec
 from hilbed.control.open_loop import OpenLoop
 from hilbed.control.reference import CircleSpec, LineSpec
 from hilbed.types import Array, Estimate, Pose

@@ -7,7 +7,7 @@ from filterpy.kalman import ExtendedKalmanFilter
 
 from hilbed.estimation.ekf import Ekf
 from hilbed.estimation.measurement import MODELS
-from hilbed.estimation.motion import OdometryModel
+from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.estimation.specs import EkfSpec, OdometrySpec
 from hilbed.types import Array, Odometry, Pose
 from tests.estimation.experiment import BEACONS, START, Errors, Step, experiment, sight

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hilbed.angles import wrap
-from hilbed.estimation.motion import OdometryModel, predicted
+from hilbed.estimation.motion import predicted
+from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.poses import moved
 from hilbed.types import Array, Pose
 from tests.estimation.experiment import exact_arc

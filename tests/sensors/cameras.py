@@ -15,8 +15,8 @@ from hilbed.rng import stream
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.camera import Camera, CameraSpec, open_eye
 from hilbed.sensors.eye import LocalEye
-from hilbed.types import Nanos, Pose, Reading, Snapshot, Transfer, Truth
-from hilbed.vision.seams import Detection, Image
+from hilbed.types import Image, Nanos, Pose, Reading, Snapshot, Transfer, Truth
+from hilbed.vision.seams import Detection
 
 ORIGIN = Pose(0.0, 0.0, 0.0)
 EXPOSURE: Nanos = 100_000_000
