@@ -38,8 +38,12 @@ def limits(data_type: str) -> tuple[int, int]:
     return (-(1 << bits - 1), (1 << bits - 1) - 1) if data_type[0] == "i" else (0, (1 << bits) - 1)
 
 
+def _code(name: str, data_type: str) -> str:
+    return STRUCT_CODES[data_type] if name else f"{scalar(data_type).size}x"
+
+
 class PdoCodec:
-    """One PDO: `fields` are (name, type) in the order of the mapping, without gaps.
+    """One PDO: `fields` are (name, type) in the order of the mapping, without a name where nobody looks.
 
     `pack(*values)` and `unpack(data)` are those of `struct`, for the hot path: unpack raises struct.error
     where the length is not `size`.
@@ -48,8 +52,8 @@ class PdoCodec:
     __slots__ = ("_struct", "names", "pack", "size", "unpack")
 
     def __init__(self, fields: Sequence[tuple[str, str]]) -> None:
-        self.names = tuple(name for name, _ in fields)
-        self._struct = Struct("<" + "".join(STRUCT_CODES[data_type] for _, data_type in fields))
+        self.names = tuple(name for name, _ in fields if name)
+        self._struct = Struct("<" + "".join(_code(*field) for field in fields))
         self.size = self._struct.size
         self.pack = self._struct.pack
         self.unpack = self._struct.unpack

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from hilbed.can.cob import CONTROLLER_ID
 from hilbed.can.codec import bit_length
-from hilbed.can.drive_table import DriveTable, Entry, Pdo
+from hilbed.can.drive_table import DriveTable
 from hilbed.can.node import Node
+from hilbed.can.objects import Entry, Pdo
 from hilbed.clock import MILLISECOND, seconds
 from hilbed.types import Nanos
 
@@ -65,15 +66,15 @@ def _pdo(node: Node, name: str, pdo: Pdo) -> Iterator[Step]:
     if sends and pdo.transmission > 240:
         yield Entry(index=index, sub=5, type="u16"), pdo.event_timer
     if node.table.remappable:
-        yield from _mapping(node.table, index + _MAPPING, pdo)
+        yield from _mapping(node.table, index + _MAPPING, name)
     yield switch, identifier
 
 
-def _mapping(table: DriveTable, index: int, pdo: Pdo) -> Iterator[Step]:
+def _mapping(table: DriveTable, index: int, pdo: str) -> Iterator[Step]:
     count = Entry(index=index, sub=0, type="u8")
     yield count, 0
-    for sub, word in enumerate(pdo.map, start=1):
-        entry = table.objects[word]
+    entries = table.mapped(pdo)
+    for sub, entry in enumerate(entries, start=1):
         mapped = entry.index << 16 | entry.sub << 8 | bit_length(entry.type)
         yield Entry(index=index, sub=sub, type="u32"), mapped
-    yield count, len(pdo.map)
+    yield count, len(entries)

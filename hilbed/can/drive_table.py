@@ -2,58 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Annotated
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
 
-from hilbed.can.codec import DataType, PdoCodec, bit_length
+from hilbed.can.codec import PdoCodec, bit_length
+from hilbed.can.objects import U32, Entry, MappedValue, Object, Pdo, Setting, Write
 from hilbed.can.units import Units
-from hilbed.spec import Finite, Spec
+from hilbed.spec import Spec
 from hilbed.types import ScenarioError
 
 TABLES = Path(__file__).parent / "tables"
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast where libyaml is there
 PdoName = Annotated[str, Field(pattern="^[rt]pdo[1-4]$")]
-U8 = Annotated[int, Field(ge=0, le=0xFF)]
-U16 = Annotated[int, Field(ge=0, le=0xFFFF)]
-U32 = Annotated[int, Field(ge=0, le=0xFFFFFFFF)]
+Milliseconds = Annotated[int, Field(ge=1, le=0xFFFF)]
 
-
-class Entry(Spec):
-    """An entry of the object dictionary."""
-
-    index: U16
-    sub: U8 = 0
-    type: DataType
-
-
-class Write(Entry):
-    """A value that is written at boot."""
-
-    value: Finite
-
-
-class Setting(Entry):
-    """Where a number or a word of the scenario goes: number × scale, or what the word stands for."""
-
-    scale: Finite = 1.0
-    words: dict[str, int] = Field(default_factory=dict)
-
-    def raw(self, value: float | str) -> float:
-        """Returns what is written for a value in SI units or a word; KeyError for an unknown word."""
-        return self.words[value] if isinstance(value, str) else value * self.scale
-
-
-class Pdo(Spec):
-    """A PDO: base of its identifier, transmission type, event timer in ms (0: none), names of objects."""
-
-    cob_id: U16
-    transmission: U8 = 1
-    event_timer: U16 = 0
-    map: list[str]
+COMMANDED = ("controlword", "target_velocity")
+MEASURED = ("statusword", "velocity_actual", "position_actual")
 
 
 class Identity(Spec):
@@ -67,23 +37,24 @@ class Identity(Spec):
 class Heartbeat(Spec):
     """ms: how often drive and controller say that they live, and after which silence the drive stops."""
 
-    drive: Annotated[int, Field(ge=1, le=0xFFFF)] = 100
-    controller: Annotated[int, Field(ge=1, le=0xFFFF)] = 50
-    consumer: Annotated[int, Field(ge=1, le=0xFFFF)] = 250
+    drive: Milliseconds = 100
+    controller: Milliseconds = 50
+    consumer: Milliseconds = 250
 
 
 class DriveTable(Spec):
     """A type of drive: identity, units, objects, PDOs, modes, what is written at boot, where settings go.
 
-    remappable: whether the mapping of its PDOs may be written; interpolates: whether it has 60C2;
-    writes: as they stand; period: objects that follow from the control period (s); settings: objects that
-    follow from words and numbers of the scenario.
+    axes: motors in one node; remappable: whether the mapping of its PDOs may be written; interpolates:
+    whether it has 60C2; writes: as they stand; period: objects that follow from the control period (s);
+    settings: objects that follow from words and numbers of the scenario.
     """
 
     name: str
     identity: Identity
+    axes: Annotated[int, Field(ge=1, le=8)] = 1
     units: Units
-    objects: dict[str, Entry]
+    objects: dict[str, Object]
     pdos: dict[PdoName, Pdo]
     remappable: bool = True
     interpolates: bool = False
@@ -94,24 +65,76 @@ class DriveTable(Spec):
     settings: dict[str, Setting] = Field(default_factory=dict)
 
     @model_validator(mode="after")
-    def _mapped(self) -> DriveTable:
-        for name, pdo in self.pdos.items():
-            unknown = [word for word in pdo.map if word not in self.objects]
-            if unknown:
-                raise ValueError(f"{name} maps {unknown[0]!r}, which is not among the objects")
-            if sum(bit_length(self.objects[word].type) for word in pdo.map) > 64:
-                raise ValueError(f"{name} is longer than 8 bytes")
-        sent = {word for name, pdo in self.pdos.items() if name[0] == "t" for word in pdo.map}
-        for word in ("statusword", "velocity_actual", "position_actual"):
-            if word not in sent:
-                raise ValueError(f"no TPDO maps {word}")
-        if "rpdo1" not in self.pdos or {*self.pdos["rpdo1"].map} != {"controlword", "target_velocity"}:
-            raise ValueError("rpdo1 must map controlword and target_velocity")
+    def _complete(self) -> DriveTable:
+        problems = list(self._lacking()) or list(self._unmapped())
+        if problems:
+            raise ValueError("; ".join(problems))
         return self
 
-    def codec(self, pdo: str) -> PdoCodec:
-        """Returns the compiled mapping of a PDO by its name."""
-        return PdoCodec([(word, self.objects[word].type) for word in self.pdos[pdo].map])
+    def _lacking(self) -> Iterator[str]:
+        for word in (*COMMANDED, "statusword", "mode"):
+            if word not in self.objects:
+                yield f"objects has no {word}"
+        for name, pdo in self.pdos.items():
+            for item in pdo.map:
+                if self._find(item) is None:
+                    yield f"{name} maps {item!r}, which is not among the objects"
+
+    def _unmapped(self) -> Iterator[str]:
+        for name in self.pdos:
+            if sum(bit_length(entry.type) for entry in self.mapped(name)) > 64:
+                yield f"{name} is longer than 8 bytes"
+        told = {(value.word, value.axis) for name in self.receives for value in self.values(name)}
+        sent = {(value.word, value.axis) for name in self.sends for value in self.values(name)}
+        for kind, words, mapped in (("RPDO", COMMANDED, told), ("TPDO", MEASURED, sent)):
+            for word, axis in product(words, range(1, self.axes + 1)):
+                if not mapped & {(word, 0), (word, axis)}:
+                    yield f"no {kind} maps {word}" + (f" of axis {axis}" if self.axes > 1 else "")
+        others = sorted({word for word, _ in told} - {*COMMANDED})
+        if others:
+            yield f"an RPDO maps {others[0]}; the bench commands {' and '.join(COMMANDED)} only"
+
+    @property
+    def receives(self) -> list[str]:
+        """Names of the RPDOs, in the order in which they are sent to the drive."""
+        return [name for name in self.pdos if name[0] == "r"]
+
+    @property
+    def sends(self) -> list[str]:
+        """Names of the TPDOs."""
+        return [name for name in self.pdos if name[0] == "t"]
+
+    def mapped(self, pdo: str) -> list[Entry]:
+        """Returns the entries that a PDO maps, in order."""
+        return [entry.of(axis or 1) for _, entry, axis in self._items(pdo)]
+
+    def values(self, pdo: str) -> list[MappedValue]:
+        """Returns the values in a PDO, in order; an entry with halves holds two of them."""
+        return [
+            MappedValue(word, owner, data_type)
+            for word, entry, axis in self._items(pdo)
+            for owner, data_type in entry.parts(axis)
+        ]
+
+    def codec(self, pdo: str, axis: int = 1) -> PdoCodec:
+        """Returns the compiled mapping of a PDO as one axis sees it: what is another's is passed over."""
+        return PdoCodec(
+            [(value.word if value.axis in (0, axis) else "", value.type) for value in self.values(pdo)]
+        )
+
+    def _items(self, pdo: str) -> list[tuple[str, Object, int]]:
+        found = [self._find(item) for item in self.pdos[pdo].map]
+        return [item for item in found if item is not None]
+
+    def _find(self, item: str) -> tuple[str, Object, int] | None:
+        """Returns word, object and axis (0: none named) of an item of a mapping, None where it is none."""
+        word, dot, axis = item.partition(".")
+        entry = self.objects.get(word)
+        if entry is None or bool(dot) != (entry.per_axis == "sub"):
+            return None
+        if not dot:
+            return word, entry, 0
+        return (word, entry, int(axis)) if axis.isdecimal() and 1 <= int(axis) <= self.axes else None
 
 
 def bundled_tables() -> list[str]:
