@@ -1,0 +1,101 @@
+"""Opening a python-can driver: its own resolution of names, and a clear word for everything it refuses."""
+
+from __future__ import annotations
+
+import errno
+import logging
+from pathlib import Path
+from typing import NamedTuple
+
+import can
+
+from hilbed.types import Frame, ScenarioError
+
+logging.getLogger("can").addHandler(logging.NullHandler())  # what drivers log is told by the bench itself
+
+_HINTS = {
+    errno.ENODEV: "there is no such interface; `ip -brief link` lists those of this machine",
+    errno.ENOENT: "there is no such device",
+    errno.EACCES: "permission denied; is this user in the device's group?",
+    errno.EPERM: "permission denied",
+    errno.EBUSY: "another program has it open",
+    errno.EAFNOSUPPORT: "this kernel has no CAN; scripts/vcan COMMAND runs a command where it has",
+}
+_UP = 1  # IFF_UP
+
+
+class Driver(NamedTuple):
+    """An open bus, the interface that it belongs to, and its name for messages."""
+
+    bus: can.BusABC
+    interface: str
+    name: str
+
+
+def open_driver(interface: str | None, channel: str | int | None, bitrate: int | None) -> Driver:
+    """Opens a bus by python-can: what is None comes from CAN_INTERFACE and the like, then from ~/.canrc.
+
+    Raises ScenarioError, with what would do, for everything that a driver may refuse.
+    """
+    try:
+        config = can.util.load_config(config=_given(interface, channel, bitrate))
+        name = " ".join(str(config[key]) for key in ("interface", "channel") if config.get(key) is not None)
+    except Exception as error:
+        raise ScenarioError(f"bus: interface {interface!r}: {_unknown(error)}") from None
+    if config["interface"] == "socketcan":
+        _check_socketcan(name, config.get("channel"))
+    try:
+        bus = can.Bus(**_given(interface, channel, bitrate))
+    except Exception as error:  # a driver may raise anything
+        raise ScenarioError(f"bus: {name} cannot be opened: {reason(error)}") from None
+    return Driver(bus, str(config["interface"]), name)
+
+
+def reason(error: BaseException) -> str:
+    """Returns what went wrong as one line, with a hint where the operating system's reason is known."""
+    words, cause = str(error) or type(error).__name__, error.__cause__
+    if cause is not None and str(cause) not in words:
+        words = f"{words}: {cause}"
+    hint = _HINTS.get(_number(error) or 0)
+    return " ".join(f"{words} ({hint})".split() if hint else words.split())
+
+
+def message(frame: Frame) -> can.Message:
+    """Returns a frame as python-can has it."""
+    return can.Message(
+        arbitration_id=frame.id,
+        is_extended_id=frame.extended,
+        is_remote_frame=frame.remote,
+        dlc=len(frame.data),
+        data=None if frame.remote else frame.data,
+    )
+
+
+def _given(interface: str | None, channel: str | int | None, bitrate: int | None) -> dict[str, str | int]:
+    given = {"interface": interface, "channel": channel, "bitrate": bitrate}
+    return {key: value for key, value in given.items() if value is not None}
+
+
+def _unknown(error: Exception) -> str:
+    if isinstance(error, can.CanInterfaceNotImplementedError):
+        return f"python-can knows none of that name; it knows {', '.join(sorted(can.VALID_INTERFACES))}"
+    return f"python-can's settings (CAN_CONFIG, ~/.canrc): {reason(error)}"
+
+
+def _number(error: BaseException | None) -> int | None:
+    """Returns the operating system's number of an error, its own or that of what caused it."""
+    while error is not None:
+        number = getattr(error, "errno", None) or getattr(error, "error_code", None)
+        if isinstance(number, int):
+            return number
+        error = error.__cause__ or error.__context__
+    return None
+
+
+def _check_socketcan(name: str, channel: object) -> None:
+    """Finds what the socket would tell only later: no channel given, or an interface that is down."""
+    if not channel:
+        raise ScenarioError("bus: socketcan needs a channel, such as -c can0")
+    flags = Path("/sys/class/net") / str(channel) / "flags"
+    if flags.is_file() and not int(flags.read_text(), 16) & _UP:
+        raise ScenarioError(f"bus: {name} is down; `ip link set {channel} up` brings it up")

@@ -1,0 +1,110 @@
+"""Threads between the bench and drivers that may make their caller wait."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from queue import Empty, SimpleQueue
+from threading import Thread
+from time import monotonic
+
+import can
+
+from hilbed.can.driver import reason
+
+MOST_WAITING = 256
+PATIENCE = 0.1
+"""s; a command that has waited longer is too old to be sent."""
+_TURN = 0.1  # s, after which a thread looks whether it should end
+
+
+class Sender:
+    """Hands messages to a driver in their order; `trouble` says why it no longer does."""
+
+    def __init__(self, bus: can.BusABC) -> None:
+        self.trouble = ""
+        self._bus = bus
+        self._waiting: SimpleQueue[tuple[float, can.Message] | None] = SimpleQueue()
+        self._sending: float | None = None  # since when the driver has had the frame that it is sending
+        self._thread = Thread(target=self._run, name="hilbed CAN sender", daemon=True)
+        self._thread.start()
+
+    def put(self, message: can.Message) -> str:
+        """Queues a message; returns what is wrong, if it cannot be."""
+        now, sending = monotonic(), self._sending
+        if self._waiting.qsize() >= MOST_WAITING or (sending is not None and now - sending > PATIENCE):
+            self.trouble = self.trouble or f"{self._waiting.qsize()} frames wait for a driver that takes none"
+        if not self.trouble:
+            self._waiting.put((now, message))
+        return self.trouble
+
+    def purge(self) -> None:
+        """Drops what waits and tries again, whatever has been."""
+        with suppress(Empty):
+            while True:
+                self._waiting.get_nowait()
+        self.trouble = ""
+
+    def flush(self, timeout: float) -> None:
+        """Waits until the driver has taken everything, or for `timeout` s."""
+        deadline = monotonic() + timeout
+        while (self._waiting.qsize() or self._sending) and not self.trouble and monotonic() < deadline:
+            self._thread.join(0.001)
+
+    def close(self) -> None:
+        """Ends the thread, unless the driver does not let go of it."""
+        self._waiting.put(None)
+        self._thread.join(PATIENCE)
+
+    def _run(self) -> None:
+        while (waiting := self._waiting.get()) is not None:
+            queued, message = waiting
+            self._sending = monotonic()
+            if not self.trouble:
+                self.trouble = self._send(queued, message)
+            self._sending = None
+
+    def _send(self, queued: float, message: can.Message) -> str:
+        if monotonic() - queued > PATIENCE:
+            return f"a frame has waited for more than {PATIENCE:g} s"
+        try:
+            self._bus.send(message, timeout=PATIENCE)
+        except Exception as error:  # a driver may raise anything
+            return reason(error)
+        return ""
+
+
+class Receiver:
+    """Receives from a driver whose `recv` may wait, or that cannot be polled; `trouble` says why it ended."""
+
+    def __init__(self, bus: can.BusABC) -> None:
+        self.trouble = ""
+        self._bus = bus
+        self._arrived: SimpleQueue[can.Message] = SimpleQueue()
+        self._open = True
+        self._thread = Thread(target=self._run, name="hilbed CAN receiver", daemon=True)
+        self._thread.start()
+
+    def take(self, timeout: float) -> can.Message | None:
+        """Returns the next message, None after `timeout` s without one; CanOperationError at the end."""
+        try:
+            return self._arrived.get(timeout=timeout) if timeout > 0.0 else self._arrived.get_nowait()
+        except Empty:
+            if self.trouble:
+                raise can.CanOperationError(self.trouble) from None
+            return None
+
+    def close(self) -> None:
+        self._open = False
+        self._thread.join(2 * _TURN)
+
+    def _run(self) -> None:
+        while self._open:
+            try:
+                message = self._bus.recv(_TURN)
+            except ValueError:  # a broken line of a serial adapter
+                continue
+            except Exception as error:
+                self.trouble = reason(error)
+                return
+            if message is not None:
+                self._arrived.put(message)
