@@ -25,6 +25,7 @@ from hilbed.record.notes import Notes
 from hilbed.record.row import Sink
 from hilbed.scenario import yaml12
 from hilbed.scenario.load import Loaded, resolved
+from hilbed.scenario.own_files import pack
 from hilbed.types import BusError, Cycle, Diverged, HilbedError, Nanos
 from hilbed.versions import versions
 
@@ -130,9 +131,11 @@ def perform(
 
 def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:
     """Starts the run folder and returns the logs that the scenario wants in it."""
+    packed = pack(loaded.scenario, loaded.folder)  # before an old run goes, which they may be part of
     path = folder.start()
-    text = yaml12.write(resolved(loaded.scenario, versions()))
+    text = yaml12.write(resolved(packed.scenario, versions()))
     folder.write("scenario.yaml", text)
+    folder.keep(packed.contents)
     if loaded.scenario.record != "all":
         return []
     from hilbed.record.candump import CandumpLog

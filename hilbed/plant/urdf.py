@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 from xml.etree import ElementTree
 
 from hilbed.types import ScenarioError
@@ -77,6 +77,12 @@ def _end(path: Path, joint: Element, end: str, links: list[str]) -> str:
     return link
 
 
+def meshes(path: Path, part: Literal["collision", "visual"]) -> list[str]:
+    """Returns the mesh files that links collide with or are drawn as, as the URDF names them."""
+    found = read_urdf(path).iterfind(f"link/{part}/geometry/mesh")
+    return [mesh.get("filename", "") for mesh in found]
+
+
 def diffdrive(path: Path, radius: float, track: float) -> Body:
     """Instantiates the two-wheel robot of a URDF with another wheel radius and track (m).
 
@@ -93,6 +99,8 @@ def diffdrive(path: Path, radius: float, track: float) -> Body:
     for link in root.iterfind("link"):
         for visual in link.findall("visual"):
             link.remove(visual)
+    for mesh in root.iter("mesh"):  # PyBullet gets the text in another place
+        mesh.set("filename", str((path.parent / mesh.get("filename", "")).resolve()))
     mass = sum(_number(path, mass, "value") for mass in root.iter("mass"))
     return Body(ElementTree.tostring(root, encoding="unicode"), joints, radius, track, mass, spin)
 

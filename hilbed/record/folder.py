@@ -17,8 +17,9 @@ from hilbed.types import ScenarioError
 
 SCENARIO, SIGNALS, MCAP = "scenario.yaml", "signals.npz", "log.mcap"
 CAN, VERDICT, REPORT, FRAMES = "can.log", "verdict.json", "report.html", "frames"
+FILES = "files"
 RESERVE, RESERVED = ".reserve", 1 << 16
-CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, VERDICT, REPORT, FRAMES, RESERVE)
+CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, VERDICT, REPORT, FRAMES, FILES, RESERVE)
 
 
 class RunFolder:
@@ -58,6 +59,16 @@ class RunFolder:
         """Writes a file at once or not at all; raises RecordError if it cannot be written."""
         data = content.encode() if isinstance(content, str) else content
         write_whole(self.path / name, data)
+
+    def keep(self, contents: Mapping[str, bytes]) -> None:
+        """Writes the scenario's own files, by their paths in the folder; raises RecordError."""
+        for name, data in contents.items():
+            place = self.path / name
+            try:
+                place.parent.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise RecordError(f"{place}: {error.strerror}") from error
+            write_whole(place, data)
 
     def write_verdict(self, text: str) -> None:
         """Writes verdict.json in the room that was set aside; raises RecordError if it cannot be written."""

@@ -17,7 +17,7 @@ from hilbed.disturbances import DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.plant.chopper import Switched, periods
-from hilbed.plant.urdf import diffdrive
+from hilbed.plant.urdf import diffdrive, meshes
 from hilbed.robots import ROBOTS, RobotSpec
 from hilbed.scenario import files
 from hilbed.scenario.problems import Problem, nearest
@@ -107,12 +107,7 @@ def _path(plant: PlantSpec, reference: ReferenceSpec | None) -> Problems:
 
 
 def _files(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
-    wanted = []
-    if isinstance(plant, SimulatedSpec):
-        wanted.append((("robot", "urdf"), robot.urdf))
-    if isinstance(plant, RecordedSpec):
-        wanted.append((("plant", "file"), plant.file))
-    for path, name in wanted:
+    for path, name in files.named(robot, plant):
         try:
             files.resolve(name, folder)
         except ScenarioError as error:
@@ -126,6 +121,8 @@ def _body(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
             path = files.resolve(robot.urdf, folder)
             try:
                 diffdrive(path, robot.wheel_radius, robot.track)
+                for mesh in meshes(path, "collision"):
+                    files.beside(mesh, robot.urdf, folder)
             except ScenarioError as error:
                 yield Problem(("robot", "urdf"), f"robot.urdf: {error}")
 

@@ -5,8 +5,19 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from hilbed.plant import PlantSpec, RecordedSpec
 from hilbed.resources import package_file
+from hilbed.robots import RobotSpec
 from hilbed.types import ScenarioError
+
+SCHEMES = ("package", "data")
+
+
+def named(robot: RobotSpec, plant: PlantSpec) -> list[tuple[tuple[str, str], str]]:
+    """Returns the files that a scenario names and needs, each with the path of its key."""
+    if isinstance(plant, RecordedSpec):
+        return [(("plant", "file"), plant.file)]
+    return [(("robot", "urdf"), robot.urdf)]
 
 
 def resolve(name: str, folder: Path) -> Path:
@@ -14,12 +25,28 @@ def resolve(name: str, folder: Path) -> Path:
 
     Raises ScenarioError where the file is missing, or outside the three.
     """
-    scheme, colon, rest = name.partition(":")
-    if colon and scheme == "package":
+    scheme, rest = _split(name)
+    if scheme == "package":
         return package_file(rest)
-    if colon and scheme == "data":
-        return _inside(_data_folder(name), rest, name)
-    return _inside(folder, name, name)
+    return _inside(_data_folder(name) if scheme == "data" else folder, rest, name)
+
+
+def beside(other: str, name: str, folder: Path) -> Path:
+    """Returns the file that the file `name` calls `other`, from its own place; raises ScenarioError."""
+    near = resolve(name, folder).parent
+    scheme, _ = _split(name)
+    root = near if scheme == "package" else _data_folder(name) if scheme == "data" else folder
+    return _inside(root, str(near / other), other)
+
+
+def is_own(name: str) -> bool:
+    """Tells whether a name means a file in the scenario's own folder."""
+    return not _split(name)[0]
+
+
+def _split(name: str) -> tuple[str, str]:
+    scheme, colon, rest = name.partition(":")
+    return (scheme, rest) if colon and scheme in SCHEMES else ("", name)
 
 
 def _data_folder(name: str) -> Path:
