@@ -34,6 +34,7 @@ class Axis:
     """
 
     __slots__ = (
+        "_actual",
         "_amperes",
         "_limits",
         "_pack",
@@ -65,7 +66,8 @@ class Axis:
         self.controlword = ENABLE_OPERATION
         self.radians_per_count = 1.0 / node.counts_per_radian
         self._velocity = node.velocity_per_radian
-        self._amperes = table.units.rated_current * table.units.polarity / 1000.0
+        self._actual = node.actual_per_radian
+        self._amperes = node.amperes
         self._rpdo = table.pdos["rpdo1"].cob_id + node.id
         self._limits = limits(table.objects["target_velocity"].type)
         codec = table.codec("rpdo1")
@@ -102,6 +104,4 @@ class Axis:
     def signals(self) -> DriveSignals:
         """Returns the drive as the controller sees it now."""
         values = self.values
-        return DriveSignals(
-            self.speed_ref, values[VELOCITY] / self._velocity, values[CURRENT] * self._amperes
-        )
+        return DriveSignals(self.speed_ref, values[VELOCITY] / self._actual, values[CURRENT] * self._amperes)

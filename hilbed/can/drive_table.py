@@ -75,6 +75,8 @@ class DriveTable(Spec):
         for word in (*COMMANDED, "statusword", "mode"):
             if word not in self.objects:
                 yield f"objects has no {word}"
+        if isinstance(self.units.polarity, list) and len(self.units.polarity) != self.axes:
+            yield f"units.polarity has {len(self.units.polarity)} signs for {self.axes} axes"
         for name, pdo in self.pdos.items():
             for item in pdo.map:
                 if self._find(item) is None:

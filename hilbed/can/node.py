@@ -12,7 +12,8 @@ from hilbed.can.drive_table import DriveTable
 class Node:
     """A drive by name and node number, its type's table, and what the scenario sets.
 
-    settings: words and numbers by their key in the table's `settings`; mode: key of the table's `modes`.
+    settings: words and numbers by their key in the table's `settings`; mode: key of the table's `modes`;
+    axis: which one of the node's, from 1.
     """
 
     name: str
@@ -20,6 +21,7 @@ class Node:
     table: DriveTable
     mode: str = "csv"
     settings: Mapping[str, float | str] = field(default_factory=dict)
+    axis: int = 1
 
     @property
     def counts_per_turn(self) -> float:
@@ -29,12 +31,23 @@ class Node:
     @property
     def counts_per_radian(self) -> float:
         """Units of 6064 a radian of the wheel, negative where the drive is mounted mirrored."""
-        return self.table.units.position_scale(self.counts_per_turn)
+        return self.table.units.position_scale(self.counts_per_turn, self.axis)
 
     @property
     def velocity_per_radian(self) -> float:
-        """Units of 60FF and 606C a rad/s of the wheel, negative where the drive is mounted mirrored."""
-        return self.table.units.velocity_scale(self.counts_per_turn)
+        """Units of 60FF a rad/s of the wheel, negative where the drive is mounted mirrored."""
+        return self.table.units.velocity_scale(self.counts_per_turn, self.axis)
+
+    @property
+    def actual_per_radian(self) -> float:
+        """Units of 606C a rad/s of the wheel, negative where the drive is mounted mirrored."""
+        return self.table.units.actual_scale(self.counts_per_turn, self.axis)
+
+    @property
+    def amperes(self) -> float:
+        """A a number in the object of the current, negative where the drive is mounted mirrored."""
+        return self.table.units.amperes(self.axis)
 
     def __str__(self) -> str:
-        return f"drive {self.name} (node {self.id})"
+        axis = f", axis {self.axis}" if self.table.axes > 1 else ""
+        return f"drive {self.name} (node {self.id}{axis})"
