@@ -18,7 +18,7 @@ from hilbed.build import BOOT, Bench, build
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.record.columns import Columns
-from hilbed.record.folder import RunFolder
+from hilbed.record.folder import DBC, RunFolder
 from hilbed.record.hashing import BusDigest, run_hash, signals_hash
 from hilbed.record.journal import Journal
 from hilbed.record.notes import Notes
@@ -143,6 +143,10 @@ def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:
     from hilbed.record.mcap import McapLog, Setting
 
     setting = Setting(bench.beacons, _path(bench, loaded), 0.2, loaded.scenario.disturbances, text)
+    if bench.nodes:
+        from hilbed.can.dbc import dbc
+
+        folder.write(DBC, dbc(bench.nodes))
     sinks: list[Sink] = [McapLog(path / "log.mcap", BOOT, setting), Frames(path / "frames")]
     return [CandumpLog(path / "can.log", BOOT), *sinks] if bench.drives else sinks
 

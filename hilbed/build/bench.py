@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from hilbed.can.node import Node
 from hilbed.clock import MILLISECOND, SECOND
 from hilbed.loop import Rig
 from hilbed.ports import Reference
@@ -21,7 +22,8 @@ class Bench:
 
     start: pose at t = 0; kinds: what its sensors measure, with the number of components; boot: brings the
     drives up, ends at t = 0; stop: brings them to rest from the time given; ticks: the plant's log from a row
-    on; tick: ns; events: what the drives did that they should not have; close: gives back what it holds.
+    on; tick: ns; events: what the drives did that they should not have; close: gives back what it holds;
+    nodes: the drives on the bus.
     """
 
     rig: Rig
@@ -36,3 +38,4 @@ class Bench:
     ticks: Callable[[int], dict[str, Array]] = lambda _: {}
     events: Callable[[], list[str]] = list
     close: Callable[[], None] = lambda: None
+    nodes: tuple[Node, ...] = ()

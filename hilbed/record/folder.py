@@ -17,9 +17,10 @@ from hilbed.types import ScenarioError
 
 SCENARIO, SIGNALS, MCAP = "scenario.yaml", "signals.npz", "log.mcap"
 CAN, VERDICT, REPORT, FRAMES = "can.log", "verdict.json", "report.html", "frames"
+DBC = "bus.dbc"
 FILES = "files"
 RESERVE, RESERVED = ".reserve", 1 << 16
-CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, VERDICT, REPORT, FRAMES, FILES, RESERVE)
+CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, DBC, VERDICT, REPORT, FRAMES, FILES, RESERVE)
 
 
 class RunFolder:
