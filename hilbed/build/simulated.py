@@ -82,7 +82,7 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> B
     kinds = {"azimuth": 1} if sensors else {}
     return Bench(
         rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
-        hands.boot, hands.stop, plant.ticks, hands.events, guests.close,
+        hands.boot, hands.stop, plant.ticks, hands.events, guests.close, nodes,
     )  # fmt: skip
 
 
