@@ -7,7 +7,6 @@ from typing import Protocol
 
 from hilbed.types import (
     Command,
-    Cycle,
     Estimate,
     Frame,
     Nanos,
@@ -103,7 +102,3 @@ class Witness(Protocol):
     def transfer(self, transfer: Transfer) -> None:
         """Notes a frame that has crossed the bus."""
         ...
-
-
-class Recorder(Protocol):
-    def record(self, cycle: Cycle) -> None: ...

@@ -64,6 +64,7 @@ class _Ending:
         self.reason = ""
         self.trace = ""
         self.wall = 0.0
+        self.cost = Cost().as_dict()
         self.last: Nanos = 0
 
     def set(self, status: int, reason: str, trace: str = "") -> None:
@@ -118,7 +119,7 @@ def perform(
         reason=ending.reason,
         sim_time=seconds(ending.last),
         wall_time=ending.wall,
-        cost=cost.as_dict(),
+        cost=ending.cost,
         hash=run_hash(signals, bus.digest()),
         signals_hash=signals_hash(signals),
         events=bench.events(),
@@ -159,13 +160,15 @@ def _path(bench: Bench, loaded: Loaded) -> list[tuple[float, float]]:
 
 
 def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: _Ending) -> None:
-    """Boots, runs and stops; what goes wrong is kept in `ending`."""
+    """Boots, runs and stops; what goes wrong is kept in `ending`. Time and cost are those of the cycles."""
+    cost = bench.rig.cost
     ending.attempt(bench.boot)
     if ending.status == PASSED:
-        start = perf_counter()
+        start, before = perf_counter(), cost.as_dict()
         with collector.paused():
             ending.attempt(lambda: _cycles(bench, journal, duration, watch, ending))
         ending.wall = perf_counter() - start
+        ending.cost = {part: spent - before[part] for part, spent in cost.as_dict().items()}
     ending.attempt(lambda: bench.stop(ending.last))
     ending.attempt(journal.close)
 

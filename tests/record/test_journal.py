@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from hilbed.cost import Cost
-from hilbed.ports import Recorder, Witness
+from hilbed.ports import Witness
 from hilbed.record.disk import RecordError
 from hilbed.record.journal import Journal
 from hilbed.record.notes import Notes
@@ -35,12 +35,11 @@ def journal_of(notes: Notes, *sinks: Sink, cost: Cost | None = None) -> Journal:
 def test_cycles_and_notes_reach_the_sinks_twice_a_second_and_at_the_end() -> None:
     cost, notes, sink = Cost(), Notes(), Counting()
     journal = journal_of(notes, sink, cost=cost)
-    recorder: Recorder = journal
     witness: Witness = notes
     seen = []
     for k in range(120):
         witness.transfer(transfer(k, 1))
-        recorder.record(cycle(k))
+        journal.record(cycle(k))
         seen.append((sink.rows, sink.frames))
     assert seen[49] == (0, 0)
     assert seen[50] == (51, 51)
