@@ -71,6 +71,16 @@ def message(frame: Frame) -> can.Message:
     )
 
 
+def frame_of(received: can.Message) -> Frame | None:
+    """Returns a message as the bench has it; None if it is no CAN 2.0 frame, whatever the driver says."""
+    identifier, extended, size = received.arbitration_id, received.is_extended_id, received.dlc
+    if received.is_fd or not 0 <= size <= 8 or not 0 <= identifier <= (0x1FFFFFFF if extended else 0x7FF):
+        return None
+    if received.is_remote_frame:
+        return Frame(identifier, bytes(size), extended, True)
+    return Frame(identifier, bytes(received.data), extended) if len(received.data) == size else None
+
+
 def _given(interface: str | None, channel: str | int | None, bitrate: int | None) -> dict[str, str | int]:
     given = {"interface": interface, "channel": channel, "bitrate": bitrate}
     return {key: value for key, value in given.items() if value is not None}

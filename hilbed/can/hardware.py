@@ -9,7 +9,7 @@ from time import monotonic
 
 import can
 
-from hilbed.can.driver import message, open_driver, reason
+from hilbed.can.driver import frame_of, message, open_driver, reason
 from hilbed.can.driver_threads import Receiver, Sender
 from hilbed.types import BusError, Frame
 
@@ -20,7 +20,6 @@ PROMPT = ("socketcan", "virtual", "udp_multicast")
 
 _BUS_OFF = 0x40  # class of error in the identifier of SocketCAN's error frames
 _BUS_OFF_WORDS = "the adapter is bus-off: is a node on the bus to acknowledge, with this bit rate?"
-_CLASSICAL = 8
 Receive = Callable[[float], "can.Message | None"]
 
 
@@ -118,13 +117,11 @@ class Adapter:
                 raise self._lost("receiving", _BUS_OFF_WORDS)
         elif not received.is_rx:
             return  # an own frame, which some drivers return
-        elif received.is_fd or received.dlc > _CLASSICAL:
+        elif (frame := frame_of(received)) is None:
             self.counts.malformed += 1
         else:
             self.counts.received += 1
-            remote = received.is_remote_frame
-            data = bytes(received.dlc) if remote else bytes(received.data)
-            frames.append(Frame(received.arbitration_id, data, received.is_extended_id, remote))
+            frames.append(frame)
 
     def _lost(self, doing: str, why: str) -> BusError:
         return BusError(f"{self.name}: lost while {doing}: {why}")
