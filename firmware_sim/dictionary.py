@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from firmware_sim.abort import Abort, AbortCode
@@ -25,21 +26,26 @@ class ObjectDictionary:
     """Values of every entry for one node.
 
     `values` (by `key(index, sub)`) is shared with the parts of the firmware that produce and use them;
-    `read` and `write` are the guarded way, for a client on the bus.
+    `read` and `write` are the guarded way, for a client on the bus. stored: what a reset restores instead of
+    the defaults, by index and sub-index; raises Abort where an entry does not exist or does not take it.
     """
 
-    __slots__ = ("_node", "values")
+    __slots__ = ("_node", "_stored", "values")
 
-    def __init__(self, node: int) -> None:
+    def __init__(self, node: int, stored: Mapping[tuple[int, int], Any] | None = None) -> None:
         self._node = node
+        self._stored = {key(*where): value for where, value in (stored or {}).items()}
+        for where, value in (stored or {}).items():
+            find(*where).check(value)
         self.values: dict[int, Any] = {}
         self.restore(0x0000, 0xFFFF)
 
     def restore(self, first: int, last: int) -> None:
-        """Gives the objects of these indices, both included, their defaults."""
+        """Gives the objects of these indices, both included, their stored values or their defaults."""
         for where, entry in ENTRIES.items():
             if first <= where >> 8 <= last:
                 default = entry.default + self._node if entry.relative else entry.default
+                default = self._stored.get(where, default)
                 # As it would be after a write: a REAL32 has 24 bits.
                 self.values[where] = entry.type.unpack(entry.type.pack(default))
 

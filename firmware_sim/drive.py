@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from firmware_sim.axis import Axis
 from firmware_sim.dictionary import ObjectDictionary
@@ -18,13 +19,18 @@ class Drive:
     takes the frames to send out of `outbox`, which stays the same list. Power comes with the first tick,
     which sends the boot-up message. node: 1 to 127; accept: told the identifiers that the drive heeds, from
     power-on and whenever they change, for the acceptance filter of a CAN controller. Extended frames are
-    never heeded.
+    never heeded. stored: what its owner has set and stored, by index and sub-index: defaults of its objects.
     """
 
-    def __init__(self, node: int, accept: Accept | None = None) -> None:
+    def __init__(
+        self,
+        node: int,
+        accept: Accept | None = None,
+        stored: Mapping[tuple[int, int], Any] | None = None,
+    ) -> None:
         if not 1 <= node <= 127:
             raise ValueError(f"a node's number is 1 to 127, not {node}")
-        dictionary = ObjectDictionary(node)
+        dictionary = ObjectDictionary(node, stored)
         errors = Errors(dictionary.values)
         self._axis = Axis(dictionary.values, errors)
         self._node = Node(node, dictionary, errors, self._axis, accept)
@@ -52,6 +58,11 @@ class Drive:
     def bridge_enabled(self) -> bool:
         """False: the chopper is open and the wheel coasts."""
         return self._axis.bridge_enabled
+
+    @property
+    def faulted(self) -> bool:
+        """True in FAULT and on the way there."""
+        return self._axis.faulted
 
     @property
     def speed_ref(self) -> float:

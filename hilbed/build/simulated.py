@@ -21,10 +21,11 @@ from hilbed.disturbances import DISTURBANCES
 from hilbed.disturbances.schedule import Schedule
 from hilbed.effects import Effects
 from hilbed.loop import Rig
+from hilbed.plant.axes import Axis, SimulatedAxis
 from hilbed.plant.bullet import BulletWorld
 from hilbed.plant.drivetrain import DriveTrain, reflected_inertia
 from hilbed.plant.encoder import Encoder
-from hilbed.plant.simulated import Axis, SimulatedPlant
+from hilbed.plant.simulated import SimulatedPlant
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.plant.supply import Supply
 from hilbed.plant.urdf import Body, diffdrive, moved_inertia
@@ -143,4 +144,4 @@ def _body(loaded: Loaded) -> Body:
 
 def _axis(node: Node, spec: SimulatedSpec, inertia: float, wire: Wire) -> Axis:
     train = DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick, inertia)
-    return Axis(node.name, node.id, train, Encoder(spec.encoder, spec.tick), wire.attach)
+    return SimulatedAxis(node.name, node.id, train, Encoder(spec.encoder, spec.tick), wire.attach)

@@ -27,6 +27,8 @@ class BulletWorld:
     `slips` (m/s), surface speed of the wheel less ground speed at the contact, forward positive. `pose` and
     `height` are worked out when somebody asks.
 
+    `targets` (rad/s) may be set: what a wheel is pulled to by the torque that is dry friction otherwise.
+
     A wheel's radius factor f makes it roll as one of radius f R, and may change at any time. Bullet keeps its
     sphere of radius R; between it and the drive stands a lossless gear, ω = ω_bullet / f and
     τ_bullet = τ / f, so that power is the same on both sides. (The rotor's reflected inertia is not rescaled:
@@ -54,12 +56,14 @@ class BulletWorld:
         self._friction = [0.0] * len(self._joints)
         self._factors: list[float] = []
         self._coulomb: list[float] = []
+        self._targets: list[float] = []
         self._set_friction([spec.friction] * len(self._joints))
         self._ticks = 0
         self._tick = spec.tick
         self._turned = [0.0] * len(self._joints)
         self.angles = [0.0] * len(self._joints)
         self.speeds = [0.0] * len(self._joints)
+        self.targets = [0.0] * len(self._joints)
         self.slips = [0.0] * len(self._joints)
         self._yaw: float = start.yaw
         self._locate()
@@ -78,14 +82,14 @@ class BulletWorld:
         """Moves the world by one tick; raises Diverged.
 
         torques: N m at the wheels, as the drives give them; coulomb: N m of dry friction, which stops at
-        zero speed; effects: load torques, friction, radius factors and push.
+        zero speed, or at what `targets` say; effects: load torques, friction, radius factors and push.
         """
         factors = effects.radius
         if effects.friction != self._friction:
             self._set_friction(effects.friction)
-        if factors != self._factors or coulomb != self._coulomb:
-            self._factors, self._coulomb = list(factors), list(coulomb)
-            self._set_drag([friction / factor for friction, factor in zip(coulomb, factors, strict=True)])
+        if factors != self._factors or coulomb != self._coulomb or self.targets != self._targets:
+            self._factors, self._coulomb, self._targets = list(factors), list(coulomb), list(self.targets)
+            self._set_drag()
         if effects.push != NO_PUSH:
             self._push(*effects.push)
         p.setJointMotorControlArray(
@@ -99,7 +103,7 @@ class BulletWorld:
             physicsClientId=self._client,
         )
         begun = perf_counter()
-        p.stepSimulation(physicsClientId=self._client)
+        p.stepSimulation(self._client)
         self._cost.physics += perf_counter() - begun
         self._ticks += 1
         self._read(factors)
@@ -110,10 +114,16 @@ class BulletWorld:
                 p.changeDynamics(self._robot, wheel, lateralFriction=new, physicsClientId=self._client)
         self._friction = list(friction)
 
-    def _set_drag(self, drag: Sequence[float]) -> None:
-        """A motor that holds zero speed with no more than the dry friction: exact, and it stays set."""
+    def _set_drag(self) -> None:
+        """A motor that holds its target (zero: friction) by no more than a torque: exact, it stays set."""
+        factors = self._factors
         p.setJointMotorControlArray(
-            self._robot, self._joints, p.VELOCITY_CONTROL, forces=drag, physicsClientId=self._client
+            self._robot,
+            self._joints,
+            p.VELOCITY_CONTROL,
+            targetVelocities=[speed * factor for speed, factor in zip(self._targets, factors, strict=True)],
+            forces=[torque / factor for torque, factor in zip(self._coulomb, factors, strict=True)],
+            physicsClientId=self._client,
         )
 
     def _push(self, x: float, y: float, torque: float) -> None:
@@ -131,8 +141,8 @@ class BulletWorld:
         Bullet turns the body by its new rate over the tick, so yaw follows from the last known one without
         error, as long as the robot stands level.
         """
-        (vx, vy, _), (_, _, turning) = p.getBaseVelocity(self._robot, physicsClientId=self._client)
-        states = p.getJointStates(self._robot, self._joints, physicsClientId=self._client)
+        (vx, vy, _), (_, _, turning) = p.getBaseVelocity(self._robot, self._client)
+        states = p.getJointStates(self._robot, self._joints, self._client)
         self._known = False
         self._yaw = yaw = self._yaw + turning * self._tick
         # Forward speed of the axle's midpoint, and half the difference between its wheels.

@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Collection, Sequence
-from typing import Protocol, TypeAlias, cast
+from collections.abc import Callable, Sequence
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from firmware_sim import Drive
 from hilbed.cost import Cost, perf_counter
 from hilbed.effects import Effects
 from hilbed.plant import pins
-from hilbed.ports import Bus, Sensor
-from hilbed.types import Array, Frame, Nanos, Pose, Truth
+from hilbed.plant.axes import Axis
+from hilbed.ports import Sensor
+from hilbed.types import Array, Nanos, Pose, Truth
 
 SIGNALS = ("speed", "current", "slip", "load_torque", "torque", "speed_ref", "duty")
 """What a row of the tick log holds, each of all drives in their order; units as in signals.npz."""
 
 
 class World(Protocol):
-    """Moves the robot by the torques at its wheels; lists are in the order of the drives."""
+    """Moves the robot by the torques at its wheels; lists are in the order of the drives.
 
+    targets: speeds (rad/s) towards which the `coulomb` torque of a step pulls the wheels; zeros: friction.
+    """
+
+    targets: list[float]
     angles: list[float]
     speeds: list[float]
     slips: list[float]
@@ -49,69 +53,19 @@ class Medium(Protocol):
     def advance(self, until: Nanos) -> None: ...
 
 
-class Train(Protocol):
-    """Chopper, motor and gear of one wheel; `coulomb` is the dry friction (N m) the world lets act."""
-
-    coulomb: float
-    current: float
-    supply_current: float
-
-    def step(self, duty: float, enabled: bool, supply: float, wheel_speed: float) -> float: ...
-
-
-class Encoder(Protocol):
-    def sample(self, angle: float) -> int: ...
-
-
 class Supply(Protocol):
     def voltage(self, current: float, drop: float) -> float: ...
 
 
-class Port(Bus, Protocol):
-    """A node's CAN controller, whose acceptance filter the firmware sets."""
-
-    def accept(self, identifiers: Collection[int]) -> None: ...
-
-
-Attach: TypeAlias = Callable[[str], Port]
-"""Puts a node on the bus, by name."""
-
-
-class Axis:
-    """One drive from its node on the bus to its shaft.
-
-    Its firmware is one loop of a kilohertz: at the start of a tick it heeds the frames that have come since
-    the last one, then it reads its pins.
-    """
-
-    __slots__ = ("_outbox", "encoder", "firmware", "name", "port", "train")
-
-    def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
-        self.name = name
-        self.port = attach(name)
-        self.firmware = Drive(node, self.port.accept)
-        self._outbox = cast("list[Frame]", self.firmware.outbox)  # frames with the same fields
-        self.train = train
-        self.encoder = encoder
-
-    def tick(self, t: Nanos, angle: float, current: int, supply: int) -> int:
-        """Runs the firmware's tick at `t` and returns the duty in Q15; angle: rad, of the wheel."""
-        firmware, port, outbox = self.firmware, self.port, self._outbox
-        for _, frame in port.recv(t):
-            firmware.on_frame(t, frame)
-        duty = firmware.tick(t, self.encoder.sample(angle), current, supply)
-        if outbox:
-            for frame in outbox:
-                port.send(t, frame)
-            outbox.clear()
-        return duty
+Collect: TypeAlias = Callable[[Nanos], None]
+"""Waits for the answers of all firmware that is elsewhere to the pins that it has been shown."""
 
 
 class SimulatedPlant:
     """Drives, shafts, world and wire on the physics clock; `tick` in ns.
 
-    In each tick the firmware reads its pins and sets a duty, chopper and motor turn it into torque, the
-    world takes a step, the bus delivers what arrives meanwhile, and sensors that are due take a sample.
+    In each tick firmware reads its pins and sets a duty, chopper and motor turn it into torque, the world
+    takes a step, the bus delivers what arrives meanwhile, and sensors that are due take a sample.
     """
 
     def __init__(
@@ -124,7 +78,9 @@ class SimulatedPlant:
         sensors: Sequence[Sensor],
         tick: Nanos,
         cost: Cost,
+        collect: Collect | None = None,
     ) -> None:
+        """collect: where some firmware is elsewhere; called in every tick when all pins have been shown."""
         self._axes = tuple(axes)
         self._world = world
         self._supply = supply
@@ -136,7 +92,9 @@ class SimulatedPlant:
         self._now: Nanos = 0
         self._drawn = 0.0  # A out of the supply, over the last tick
         self._log = array("d")
-        self._coulomb = [axis.train.coulomb for axis in self._axes]
+        self._coulomb = [axis.coulomb for axis in self._axes]
+        self._led = [(k, axis) for k, axis in enumerate(self._axes) if axis.target is not None]
+        self._collect = collect
 
     def truth(self) -> Truth:
         """Returns where the robot is now."""
@@ -146,8 +104,9 @@ class SimulatedPlant:
         """Runs firmware and bus with the shafts at rest, as while the drives are booted."""
         volts = pins.supply(self._supply.voltage(0.0, 0.0))
         for t in range(start, end, self._tick):
+            self._present(t, volts)
             for axis, angle in zip(self._axes, self._world.angles, strict=True):
-                axis.tick(t, angle, 0, volts)
+                axis.idle(t, angle, volts)
             self._wire.advance(t + self._tick)
 
     def start(self) -> None:
@@ -177,25 +136,33 @@ class SimulatedPlant:
         schedule.apply(t, world)
         volts = self._supply.voltage(self._drawn, effects.supply_drop)
         volts_pin = pins.supply(volts)
+        self._present(t, volts_pin)
         torques, duties, currents, references, drawn = [], [], [], [], 0.0
         for axis, angle, speed in zip(self._axes, world.angles, world.speeds, strict=True):
-            firmware, train = axis.firmware, axis.train
-            duty = pins.duty(axis.tick(t, angle, pins.current(train.current), volts_pin))
-            torques.append(train.step(duty, firmware.bridge_enabled, volts, speed))
-            duties.append(duty)
-            currents.append(train.current)
-            references.append(firmware.speed_ref)
-            drawn += train.supply_current
+            torques.append(axis.step(t, angle, speed, volts, volts_pin))
+            duties.append(axis.duty)
+            currents.append(axis.current)
+            references.append(axis.speed_ref)
+            drawn += axis.supply_current
         self._drawn = drawn
         driven = perf_counter()
         self._wire.advance(t + self._tick)
         carried = perf_counter()
         cost.drives += driven - begun
         cost.bus += carried - driven
+        for k, axis in self._led:
+            world.targets[k] = axis.target or 0.0
         world.step(torques, self._coulomb, effects)
         self._log.extend(
             (*world.speeds, *currents, *world.slips, *effects.load_torque, *torques, *references, *duties)
         )
+
+    def _present(self, t: Nanos, volts: int) -> None:
+        """Shows all pins at once to what firmware is elsewhere, so that it works side by side."""
+        if self._collect is not None:
+            for axis, angle in zip(self._axes, self._world.angles, strict=True):
+                axis.present(angle, volts)
+            self._collect(t)
 
     def ticks(self, first: int = 0) -> dict[str, Array]:
         """Returns the tick log from row `first` on: "tick/t" and "tick/drive/NAME/…", each (M,)."""

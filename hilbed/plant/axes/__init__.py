@@ -1,0 +1,11 @@
+"""What turns a wheel: a drive in this process, one whose firmware is elsewhere, one that is real."""
+
+from __future__ import annotations
+
+from hilbed.plant.axes.axis import Axis
+from hilbed.plant.axes.ecu import EcuAxis
+from hilbed.plant.axes.mirrored import MirroredAxis
+from hilbed.plant.axes.real import RealAxis
+from hilbed.plant.axes.simulated import SimulatedAxis
+
+__all__ = ["Axis", "EcuAxis", "MirroredAxis", "RealAxis", "SimulatedAxis"]

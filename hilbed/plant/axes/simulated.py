@@ -1,0 +1,74 @@
+"""A drive in this process: the firmware is a node on the wire, its motor and shaft are here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from typing import Protocol, TypeAlias, cast
+
+from firmware_sim import Drive
+from hilbed.plant import pins
+from hilbed.plant.axes.axis import Encoder, Train
+from hilbed.ports import Bus
+from hilbed.types import Frame, Nanos
+
+
+class Port(Bus, Protocol):
+    """A node's CAN controller, whose acceptance filter the firmware sets."""
+
+    def accept(self, identifiers: Collection[int]) -> None: ...
+
+
+Attach: TypeAlias = Callable[[str], Port]
+"""Puts a node on the bus, by name."""
+
+
+class SimulatedAxis:
+    """One drive from its node on the bus to its shaft.
+
+    Its firmware is one loop of a kilohertz: at the start of a tick it heeds the frames that have come since
+    the last one, then it reads its pins.
+    """
+
+    __slots__ = (
+        "_outbox", "coulomb", "current", "duty", "encoder", "firmware", "name", "port", "speed_ref",
+        "supply_current", "target", "train",
+    )  # fmt: skip
+
+    def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
+        self.name = name
+        self.port = attach(name)
+        self.firmware = Drive(node, self.port.accept)
+        self._outbox = cast("list[Frame]", self.firmware.outbox)  # frames with the same fields
+        self.train = train
+        self.encoder = encoder
+        self.coulomb = train.coulomb
+        self.target: float | None = None
+        self.current = self.duty = self.speed_ref = self.supply_current = 0.0
+
+    def present(self, angle: float, supply: int) -> None:
+        """Has its firmware here, which reads its pins in the tick itself."""
+
+    def idle(self, t: Nanos, angle: float, supply: int) -> None:
+        self._tick(t, angle, 0, supply)
+
+    def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:
+        train, firmware = self.train, self.firmware
+        duty = pins.duty(self._tick(t, angle, pins.current(train.current), supply))
+        torque = train.step(duty, firmware.bridge_enabled, volts, speed)
+        self.duty = duty
+        self.speed_ref = pins.speed(pins.micro(firmware.speed_ref))
+        self.current = train.current
+        self.supply_current = train.supply_current
+        return torque
+
+    def _tick(self, t: Nanos, angle: float, current: int, supply: int) -> int:
+        """Runs the firmware's tick at `t` and returns the duty in Q15."""
+        firmware, port, outbox = self.firmware, self.port, self._outbox
+        for _, frame in port.recv(t):
+            firmware.on_frame(t, frame)
+        duty = firmware.tick(t, self.encoder.sample(angle), current, supply)
+        if outbox:
+            for frame in outbox:
+                port.send(t, frame)
+            outbox.clear()
+        return duty
