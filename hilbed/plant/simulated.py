@@ -16,7 +16,11 @@ from hilbed.ports import Sensor
 from hilbed.types import Array, Nanos, Pose, Truth
 
 SIGNALS = ("speed", "current", "slip", "load_torque", "torque", "speed_ref", "duty")
-"""What a row of the tick log holds, each of all drives in their order; units as in signals.npz."""
+"""What a row of the tick log holds, each of all drives in their order; units as in signals.npz.
+
+speed, current and slip are states at the row's t; torque is the mean over the tick that ends there, and
+load_torque, speed_ref and duty are what has been held during it: what begins at t is in the next row.
+"""
 
 
 class World(Protocol):
