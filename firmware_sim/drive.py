@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from firmware_sim.axis import Axis
+from firmware_sim.cia402 import State
 from firmware_sim.dictionary import ObjectDictionary
 from firmware_sim.errors import Errors
 from firmware_sim.frame import AnyFrame, Frame
@@ -58,6 +59,11 @@ class Drive:
     def bridge_enabled(self) -> bool:
         """False: the chopper is open and the wheel coasts."""
         return self._axis.bridge_enabled
+
+    @property
+    def state(self) -> State:
+        """Where its state machine is."""
+        return self._axis.state
 
     @property
     def faulted(self) -> bool:

@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import NoReturn
 
 from hilbed import __version__
+from hilbed.drive.arguments import add_options as add_drive_options
 
 # Nothing else of the bench is imported up here: what takes time happens where an interrupt is waited for.
 
-INTERRUPTED, BROKEN, REFUSED = 2, 3, 4
+INTERRUPTED, BROKEN, REFUSED, BUS = 2, 3, 4, 7
 
 Options = argparse.Namespace
 
@@ -46,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 def _status(options: Options) -> int:
     """Does what a command is there for and returns its exit status; what goes wrong is told."""
     from hilbed.console import open_streams, quiet_pipe
-    from hilbed.types import HilbedError, ScenarioError
+    from hilbed.types import BusError, HilbedError, ScenarioError
 
     open_streams()
     with quiet_pipe():
@@ -56,6 +57,9 @@ def _status(options: Options) -> int:
         except ScenarioError as error:
             print(error, file=sys.stderr)
             return REFUSED
+        except BusError as error:
+            print(error, file=sys.stderr)
+            return BUS
         except HilbedError as error:
             print(error, file=sys.stderr)
             return BROKEN if options.command in (_run, _sweep, _bench) else REFUSED
@@ -99,6 +103,8 @@ def _parser() -> argparse.ArgumentParser:
     fit = _command(commands, "fit", _fit, "print the noise, delay and offset that explain a run with truth")
     fit.add_argument("run", type=Path, metavar="RUN", help="a run folder")
     fit.add_argument("--fraction", type=float, default=0.5, help="first part of the run that is used (0.5)")
+    drive = _command(commands, "drive", _drive, "be a whole simulated drive on a bus, in real time")
+    add_drive_options(drive)
     bench = _command(commands, "bench", _bench, "measure floor, total and where the time goes")
     bench.add_argument("scenario", nargs="?", default="demo", metavar="SCENARIO")
     return parser
@@ -158,6 +164,12 @@ def _fit(options: Options) -> int:
 
     print(fit(options.run, options.fraction), end="")
     return 0
+
+
+def _drive(options: Options) -> int:
+    from hilbed.drive.process import main as drive
+
+    return drive(options)
 
 
 def _bench(options: Options) -> int:

@@ -1,4 +1,4 @@
-"""The options of `hilbed drive`, and the drive that they describe."""
+"""The drive that the options of `hilbed drive` describe."""
 
 from __future__ import annotations
 
@@ -13,7 +13,12 @@ from hilbed.plant.motor import MOTORS
 from hilbed.spec import Finite, NonNegative, Positive
 from hilbed.types import ScenarioError
 
-_LIMITS = {"inertia": Positive, "load": Finite, "friction": NonNegative, "supply": Positive}
+_LIMITS: dict[str, TypeAdapter[float]] = {
+    "inertia": TypeAdapter(Positive),
+    "load": TypeAdapter(Finite),
+    "friction": TypeAdapter(NonNegative),
+    "supply": TypeAdapter(Positive),
+}
 
 
 def build_of(options: argparse.Namespace) -> Build:
@@ -46,9 +51,9 @@ def build_of(options: argparse.Namespace) -> Build:
     )
 
 
-def _refused(name: str, value: float, limit: object) -> list[str]:
+def _refused(name: str, value: float, limit: TypeAdapter[float]) -> list[str]:
     try:
-        TypeAdapter(limit).validate_python(value)
+        limit.validate_python(value)
     except ValidationError as error:
         return [f"{name} {value:g}: {error.errors()[0]['msg'].lower()}"]
     return []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Callable
 from time import monotonic_ns, sleep
@@ -11,10 +12,21 @@ from hilbed.clock import MILLISECOND, SECOND
 from hilbed.console import Stop, end_progress, progress, stop_on_signal
 from hilbed.drive.desk import TICK, Build, Desk
 from hilbed.drive.metronome import Metronome
+from hilbed.drive.options import build_of
 from hilbed.drive.probe import refuse_twin
 from hilbed.types import Frame, Nanos
 
 STATUS_PERIOD: Nanos = 200 * MILLISECOND
+
+
+def main(options: argparse.Namespace) -> int:
+    """Does `hilbed drive`; returns the exit status. Raises ScenarioError, BusError."""
+    build = build_of(options)
+    adapter = Adapter(options.interface, options.channel, options.bitrate)
+    try:
+        return drive(build, adapter, options.status)
+    finally:
+        adapter.close()
 
 
 def drive(build: Build, adapter: Adapter, status: bool) -> int:
@@ -68,7 +80,7 @@ def _shower(name: str, desk: Desk, metronome: Metronome) -> Callable[[], None]:
         if metronome.ticks % every == 0:
             firmware, shaft = desk.firmware, desk.shaft
             progress(
-                f"{name}: {firmware.state}, {shaft.speed:+.3f} of {firmware.speed_ref:+.3f} rad/s, "
+                f"{name}: {firmware.state.name}, {shaft.speed:+.3f} of {firmware.speed_ref:+.3f} rad/s, "
                 f"{desk.current:+.2f} A{_account(metronome)}"
             )
 
