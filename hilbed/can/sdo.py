@@ -27,6 +27,14 @@ def download_frame(node: int, index: int, sub: int, data: bytes) -> Frame:
     return Frame(SDO_REQUEST + node, _HEAD.pack(command, index, sub, 0)[:4] + data.ljust(4, b"\0"))
 
 
+class SdoError(BusError):
+    """A transfer that failed; `code`: of the abort, by the drive or by the controller."""
+
+    def __init__(self, text: str, code: int) -> None:
+        super().__init__(text)
+        self.code = code
+
+
 class SdoClient:
     """The controller's side of one drive's SDO server; every failure is a BusError that names all of it."""
 
@@ -136,7 +144,7 @@ class SdoClient:
 
     def _fail(self, code: int, by: str, index: int, sub: int) -> NoReturn:
         what = self._what(index, sub)
-        raise BusError(f"{what} failed, {by}: {sdo_aborts.meaning(code)} (abort code {code:08X})")
+        raise SdoError(f"{what} failed, {by}: {sdo_aborts.meaning(code)} (abort code {code:08X})", code)
 
     def _what(self, index: int, sub: int) -> str:
         return f"{self._who}: SDO transfer of {index:04X}:{sub:02X}"
