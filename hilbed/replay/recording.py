@@ -1,0 +1,102 @@
+"""What a run folder keeps that a replay needs: scenario, signals, frames with their exact times."""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+from zipfile import BadZipFile
+
+import numpy as np
+import numpy.typing as npt
+
+from hilbed.build import BOOT
+from hilbed.clock import SECOND
+from hilbed.record.folder import CAN, SCENARIO, SIGNALS
+from hilbed.replay.candump import read_log
+from hilbed.scenario.load import Loaded, load
+from hilbed.types import Nanos, Reading, Received, ScenarioError
+
+Signals = Mapping[str, npt.NDArray[Any]]
+MICROSECOND: Nanos = 1000
+
+
+class Recording(NamedTuple):
+    """A finished run: frames after the boot, in the order of arrival; t in ns since the start of the run."""
+
+    loaded: Loaded
+    signals: Signals
+    frames: tuple[Received, ...]
+
+
+def read_recording(folder: Path, settings: Sequence[str] = ()) -> Recording:
+    """Reads a run folder, `--set` laid over its scenario; ScenarioError for what is missing or broken."""
+    if not folder.is_dir():
+        raise ScenarioError(f"{folder} is not a run folder")
+    for name in (SCENARIO, CAN, SIGNALS):
+        if not (folder / name).is_file():
+            raise ScenarioError(
+                f"{folder / name} is missing: only a run with drives, ended and recorded, can be replayed"
+            )
+    signals = _signals(folder / SIGNALS)
+    log = read_log(folder / CAN)
+    frames = sorted(exact(log, signals), key=lambda received: received.t)
+    loaded = load(str(folder / SCENARIO), settings)
+    return Recording(loaded, signals, tuple(received for received in frames if received.t > 0))
+
+
+def _signals(path: Path) -> Signals:
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            signals = dict(archive)
+    except (OSError, ValueError, BadZipFile, EOFError, KeyError) as error:
+        raise ScenarioError(f"{path} is not what a run writes: {error}") from None
+    if len(signals.get("t", ())) < 1:
+        raise ScenarioError(f"{path}: no cycle was recorded")
+    return signals
+
+
+def exact(log: Sequence[Received], signals: Signals) -> list[Received]:
+    """Returns frames of a log at the run's own time, to the nanosecond where the signals know it.
+
+    The log has microseconds from power-on; bus/t has the end of every frame. A frame that was put into the
+    log later keeps its microseconds.
+    """
+    known: dict[tuple[int, int], deque[Nanos]] = defaultdict(deque)
+    if "bus/t" in signals and "bus/id" in signals:
+        for end, identifier in zip(_nanos(signals["bus/t"]), signals["bus/id"].tolist(), strict=True):
+            known[max(end + BOOT, 0) // MICROSECOND, identifier].append(end)
+    frames = []
+    for stamp, frame in log:
+        ends_here = known.get((stamp // MICROSECOND, frame.id))
+        frames.append(Received(ends_here.popleft() if ends_here else stamp - BOOT, frame))
+    return frames
+
+
+def readings(signals: Signals, kind: str) -> list[Reading]:
+    """Returns the recorded readings of one kind as the estimator got them, in the order of delivery."""
+    columns = [f"{kind}/{name}" for name in ("t", "delivered", "measured", "std", "claimed")]
+    lacking = [name for name in columns if name not in signals]
+    if lacking:
+        raise ScenarioError(f"{SIGNALS} has no {lacking[0]}: it was recorded by an older hilbed")
+    t, delivered = (_nanos(signals[name]) for name in columns[:2])
+    values, stds = (_rows(signals[name]) for name in columns[2:4])
+    claimed = signals[columns[4]].tolist()
+    return [
+        Reading(kind, at, arrival, value, std, None if beacon < 0 else beacon)
+        for at, arrival, value, std, beacon in zip(t, delivered, values, stds, claimed, strict=True)
+    ]
+
+
+def kinds(signals: Signals) -> list[str]:
+    """Returns the kinds of readings that were recorded."""
+    return [name.removesuffix("/delivered") for name in signals if name.endswith("/delivered")]
+
+
+def _nanos(seconds: npt.NDArray[Any]) -> list[Nanos]:
+    return [round(stamp * SECOND) for stamp in seconds.tolist()]
+
+
+def _rows(values: npt.NDArray[Any]) -> list[tuple[float, ...]]:
+    return [tuple(row) for row in values.reshape(len(values), -1).tolist()]
