@@ -76,6 +76,8 @@ def _status(options: Options) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
+    from hilbed.bustools.options import add_tools
+
     text = "A bench for wheeled robots that behaves like a hardware-in-the-loop rig."
     parser = _Parser(prog="hilbed", description=text)
     parser.add_argument("--version", action="version", version=f"hilbed {__version__}")
@@ -105,6 +107,11 @@ def _parser() -> argparse.ArgumentParser:
     fit.add_argument("--fraction", type=float, default=0.5, help="first part of the run that is used (0.5)")
     drive = _command(commands, "drive", _drive, "be a whole simulated drive on a bus, in real time")
     add_drive_options(drive)
+    replay = _command(commands, "replay", _replay, "play a run's bus into odometry, estimator and controller")
+    replay.add_argument("run", type=Path, metavar="RUN", help="a run folder")
+    _add_settings(replay)
+    replay.add_argument("--json", action="store_true", help="print what differs as JSON")
+    add_tools(_command(commands, "bus", _bus, "look at a bus: its nodes, its frames, its DBC"))
     bench = _command(commands, "bench", _bench, "measure floor, total and where the time goes")
     bench.add_argument("scenario", nargs="?", default="demo", metavar="SCENARIO")
     return parser
@@ -120,6 +127,10 @@ def _command(
 
 def _add_scenario(parser: _Parser) -> None:
     parser.add_argument("scenario", metavar="SCENARIO", help="a bundled scenario or a YAML file")
+    _add_settings(parser)
+
+
+def _add_settings(parser: _Parser) -> None:
     parser.add_argument(
         "--set", action="append", default=[], dest="settings", metavar="PATH=VALUE",
         help="lay one value over the scenario, such as controller=open_loop",
@@ -170,6 +181,18 @@ def _drive(options: Options) -> int:
     from hilbed.drive.process import main as drive
 
     return drive(options)
+
+
+def _replay(options: Options) -> int:
+    from hilbed.replay.command import replay
+
+    return replay(options.run, options.settings, options.json)
+
+
+def _bus(options: Options) -> int:
+    from hilbed.bustools.options import bus
+
+    return bus(options)
 
 
 def _bench(options: Options) -> int:
