@@ -17,6 +17,7 @@ from hilbed.types import Frame, ScenarioError
 
 _HEX = ("controlword", "statusword", "code", "index")
 _KNOWN_NODES = range(1, 128)
+_FORMATS = ("arxml", "kcd", "sym")
 
 
 class Spoken(NamedTuple):
@@ -85,10 +86,11 @@ def _meaning(name: str, value: int) -> str:
 def read_dbc(path: Path) -> Database:
     """Reads a DBC file (or another format that cantools knows); ScenarioError where it is none."""
     try:
-        found = cantools.database.load_file(path)
+        kind = path.suffix[1:].lower()
+        found = cantools.database.load_file(path, kind if kind in _FORMATS else "dbc")
     except OSError as error:
         raise ScenarioError(f"{path}: {error.strerror}") from None
-    except Exception as error:  # a parser of any file may raise anything
+    except Exception as error:  # a parser may raise anything
         reason = " ".join(str(error).split())
         raise ScenarioError(f"{path}: not a DBC: {reason[:200]}") from None
     if not isinstance(found, Database):

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hilbed.bustools.decoder import Decoder
 
 NO_BUS = "left out: CAN_INTERFACE, CAN_CHANNEL, CAN_BITRATE or ~/.canrc say"
 
@@ -79,7 +83,7 @@ def _monitor(options: argparse.Namespace) -> int:
     return 0
 
 
-def _decoder(options: argparse.Namespace) -> "Decoder":  # noqa: F821, UP037
+def _decoder(options: argparse.Namespace) -> Decoder:
     from hilbed.bustools.decoder import Decoder, read_dbc
     from hilbed.bustools.drives import nodes_in
     from hilbed.can.dbc import database

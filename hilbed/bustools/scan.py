@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from hilbed.can import cia402, emergency, nmt
-from hilbed.can.cob import HEARTBEAT, SDO_ANSWER, SDO_REQUEST
+from hilbed.can.cob import SDO_ANSWER, SDO_REQUEST
 from hilbed.can.drive_table import bundled_tables, load_table
 from hilbed.can.link import Link, Pump
 from hilbed.can.sdo import UPLOAD, SdoClient, SdoError
@@ -22,7 +22,10 @@ DRIVE_PROFILE = 402
 
 
 class Found(NamedTuple):
-    """A node; None where it does not say. state: NMT, by its heartbeat; power: of CiA 402; trouble: a word."""
+    """A node; None where it does not say.
+
+    state: NMT, by its heartbeat; power: of CiA 402; table: whose identity it has; trouble: in words.
+    """
 
     node: int
     device_type: int | None = None
