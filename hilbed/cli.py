@@ -90,6 +90,8 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--force", action="store_true", help="replace an existing run folder")
     run.add_argument("--json", action="store_true", help="print verdict.json on stdout and nothing else")
     run.add_argument("--record", choices=("all", "signals", "none"), help="what is written (all)")
+    run.add_argument("--realtime", action="store_true", help="pace the cycles to the wall clock")
+    _add_bus(run)
 
     sweep = _command(commands, "sweep", _sweep, "run a scenario over seeds and values, in parallel")
     _add_scenario(sweep)
@@ -135,6 +137,13 @@ def _add_settings(parser: _Parser) -> None:
         "--set", action="append", default=[], dest="settings", metavar="PATH=VALUE",
         help="lay one value over the scenario, such as controller=open_loop",
     )  # fmt: skip
+
+
+def _add_bus(parser: _Parser) -> None:
+    text = "of the python-can bus that carries the frames, too"
+    parser.add_argument("-i", "--interface", metavar="IFACE", help=f"interface {text} (virtual, socketcan …)")
+    parser.add_argument("-c", "--channel", metavar="CHANNEL", help=f"channel {text} (vcan0, /dev/ttyACM0 …)")
+    parser.add_argument("-b", "--bitrate", type=int, metavar="BITRATE", help="bit/s (500000)")
 
 
 def _run(options: Options) -> int:

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from hilbed import verdict
+from hilbed.busnames import Asked, bus_settings
 from hilbed.clock import seconds
 from hilbed.console import Stop, end_progress, progress, quiet_pipe, stop_on_signal
 from hilbed.record.folder import RunFolder
@@ -21,8 +22,7 @@ from hilbed.versions import versions
 
 def run(options: argparse.Namespace) -> int:
     """Runs a scenario into its folder, prints the verdict and returns the exit status."""
-    level = [] if options.record is None else [f"record={options.record}"]
-    loaded = load(options.scenario, [*options.settings, *level], options.seed)
+    loaded = _loaded(options)
     for warning in version_warnings(loaded.scenario, versions()):
         print(f"warning: {warning}", file=sys.stderr)
     folder = RunFolder(options.out or _default_folder(loaded), options.force)
@@ -34,6 +34,19 @@ def run(options: argparse.Namespace) -> int:
     with quiet_pipe():
         _tell(outcome, folder.path, report, options.json)
     return outcome.status
+
+
+def _loaded(options: argparse.Namespace) -> Loaded:
+    """Reads the scenario with all that the command line, or CAN_INTERFACE, lays over it."""
+    settings = list(options.settings)
+    if options.record is not None:
+        settings.append(f"record={options.record}")
+    loaded = load(options.scenario, settings, options.seed)
+    if options.realtime and loaded.scenario.realtime is None:
+        settings.append("realtime={}")
+    asked = Asked(options.interface, options.channel, options.bitrate)
+    settings += bus_settings(asked, loaded.scenario.bus)
+    return load(options.scenario, settings, options.seed) if settings != options.settings else loaded
 
 
 def _default_folder(loaded: Loaded) -> Path:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import isfinite
 
@@ -47,21 +47,32 @@ def think(rig: Rig, t: Nanos) -> Cycle:
     return Cycle(t, truth, odometry, readings, estimate, command)
 
 
-def cycle(rig: Rig, t: Nanos) -> Cycle:
-    """Runs the control period that starts at `t`: read, think, write, let the world move."""
+def cycle(rig: Rig, t: Nanos, act: bool = True) -> Cycle:
+    """Runs the control period that starts at `t`: read, think, write, let the world move.
+
+    act: whether the commands are written; those of a cycle that comes too late are not.
+    """
     thought = think(rig, t)
-    start = perf_counter()
-    rig.base.write(t, thought.command)
-    rig.cost.bus += perf_counter() - start
+    if act:
+        start = perf_counter()
+        rig.base.write(t, thought.command)
+        rig.cost.bus += perf_counter() - start
     rig.plant.advance(t, t + rig.period)
     return thought
 
 
-def run(rig: Rig, duration: Nanos) -> Iterator[Cycle]:
+def at_once(_: Nanos) -> bool:
+    """The pace of a run in simulated time: every cycle may begin, and is in time."""
+    return True
+
+
+def run(rig: Rig, duration: Nanos, pace: Callable[[Nanos], bool] = at_once) -> Iterator[Cycle]:
     """Yields the cycles of a run, and last what is known and decided at its very end.
 
     duration: ns, a multiple of the period. Yields duration / period + 1 cycles; the last one moves nothing.
+    pace: waits for a cycle's beginning; returns whether its commands may still be written.
     """
     for t in range(0, duration, rig.period):
-        yield cycle(rig, t)
+        yield cycle(rig, t, pace(t))
+    pace(duration)
     yield think(rig, duration)

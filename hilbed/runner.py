@@ -17,14 +17,16 @@ from hilbed import collector, loop, verdict
 from hilbed.build import BOOT, Bench, build
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
+from hilbed.pacer import Pacer
 from hilbed.record.columns import Columns
 from hilbed.record.folder import DBC, RunFolder
 from hilbed.record.hashing import BusDigest, run_hash, signals_hash
-from hilbed.record.journal import Journal
+from hilbed.record.journal import HELPING, Journal
 from hilbed.record.notes import Notes
 from hilbed.record.row import Sink
 from hilbed.scenario import yaml12
 from hilbed.scenario.load import Loaded, resolved
+from hilbed.scenario.model import Scenario
 from hilbed.scenario.own_files import pack
 from hilbed.types import BusError, Cycle, Diverged, HilbedError, Nanos
 from hilbed.versions import versions
@@ -98,11 +100,13 @@ def perform(
     Raises ScenarioError for what is found before the first cycle, when nothing has been written yet.
     """
     cost, notes, ending = Cost(), Notes(), _Ending()
-    bench = build(loaded, notes, cost, separate)
+    pacer = _pacer(loaded.scenario)
+    bench = build(loaded, notes, cost, separate, pacer)
     columns, bus = Columns(bench.drives, bench.kinds), BusDigest()
     try:
         sinks = [] if folder is None else _logs(bench, loaded, folder)
-        journal = Journal(notes, [columns, bus, *sinks], cost, bench.start, bench.reference)
+        helping = 0 if pacer else HELPING
+        journal = Journal(notes, [columns, bus, *sinks], cost, bench.start, bench.reference, helping)
         _run(bench, journal, nanos(loaded.scenario.duration), watch or Watch(), ending)
     finally:
         bench.close()
@@ -111,6 +115,8 @@ def perform(
     signals = columns.finish(ticks, bench.tick)
     if bench.beacons:
         signals["beacons"] = np.array([beacon.at for beacon in bench.beacons])
+    if pacer is not None:
+        signals |= {name: np.array(column) for name, column in pacer.ledger.columns().items()}
     if folder is not None and loaded.scenario.record != "none":
         ending.attempt(lambda: folder.write_signals(signals))
     account = verdict.Account(
@@ -123,11 +129,23 @@ def perform(
         hash=run_hash(signals, bus.digest()),
         signals_hash=signals_hash(signals),
         events=bench.events(),
+        parts=_parts(bench, pacer),
     )
     content = verdict.conclude(account, signals, loaded.scenario.criteria)
     if folder is not None:
         ending.attempt(lambda: folder.write_verdict(verdict.text(content)))
     return Outcome(_status(content, ending), content, ending.trace)
+
+
+def _pacer(scenario: Scenario) -> Pacer | None:
+    return None if scenario.realtime is None else Pacer(scenario.realtime, nanos(scenario.period))
+
+
+def _parts(bench: Bench, pacer: Pacer | None) -> dict[str, Any]:
+    """Returns what verdict.json says of a run in real time, or on a bus that others are on."""
+    if pacer is None:
+        return bench.account()
+    return {"realtime": pacer.ledger.summary(pacer.period, bench.late()), **bench.account()}
 
 
 def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:
@@ -175,7 +193,7 @@ def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: 
 
 def _cycles(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: _Ending) -> None:
     logged = 0
-    for cycle in loop.run(bench.rig, duration):
+    for cycle in loop.run(bench.rig, duration, bench.pace):
         if cycle.t % SECOND == 0 or cycle.t == duration:
             rows = bench.ticks(logged)
             logged += len(rows.get("tick/t", ()))

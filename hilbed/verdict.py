@@ -16,7 +16,7 @@ class Account(NamedTuple):
     """What the runner knows of a run besides its signals.
 
     reason: why it ended before its time, else empty; sim_time, wall_time, cost: s; events: what the drives
-    did that they should not have.
+    did that they should not have; parts: what some runs have besides, by its key in verdict.json.
     """
 
     scenario: str
@@ -28,6 +28,7 @@ class Account(NamedTuple):
     hash: str
     signals_hash: str
     events: Sequence[str] = ()
+    parts: Mapping[str, Any] = {}
 
 
 def conclude(
@@ -53,6 +54,7 @@ def conclude(
         "hash": account.hash,
         "signals_hash": account.signals_hash,
         "events": list(account.events),
+        **account.parts,
     }
 
 
@@ -115,4 +117,26 @@ def _summary(content: Mapping[str, Any], colour: bool) -> str:
     shown = [f"drive event: {event}" for event in events[:MOST_EVENTS]]
     if len(events) > MOST_EVENTS:
         shown.append(f"… and {len(events) - MOST_EVENTS} more drive events in verdict.json")
-    return "\n".join([line, *([content["reason"]] if content["reason"] else []), *shown])
+    parts = [tell(content[part]) for part, tell in _PARTS.items() if part in content]
+    return "\n".join([line, *([content["reason"]] if content["reason"] else []), *parts, *shown])
+
+
+def _realtime(part: Mapping[str, Any]) -> str:
+    late = ", ".join(f"{drive} {count}" for drive, count in part["late_answers"].items() if count)
+    answers = f", late answers: {late}" if late else ""
+    if not part["cycles"]:
+        return f"real time: no cycle{answers}"
+    lateness = part["lateness"]
+    worst = f"worst {1e3 * lateness['worst']:.2f} ms at t = {lateness['worst_at']:.2f} s"
+    missed = f"{part['missed_deadlines']} of {part['cycles']} deadlines missed"
+    return f"real time: {missed}, late by {1e3 * lateness['median']:.2f} ms (median), {worst}{answers}"
+
+
+def _adapter(part: Mapping[str, Any]) -> str:
+    counted = (("error frames", "errors"), ("dropped", "dropped"), ("malformed", "malformed"))
+    odd = "".join(f", {part[key]} {name}" for name, key in counted if part[key])
+    foreign = f" ({part['foreign']} foreign)" if part["foreign"] else ""
+    return f"{part['name']}: {part['sent']} frames sent, {part['received']} received{foreign}{odd}"
+
+
+_PARTS = {"realtime": _realtime, "adapter": _adapter}

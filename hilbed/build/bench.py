@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from hilbed.can.node import Node
 from hilbed.clock import MILLISECOND, SECOND
-from hilbed.loop import Rig
+from hilbed.loop import Rig, at_once
 from hilbed.ports import Reference
 from hilbed.scene import BeaconSpec
 from hilbed.types import Array, Nanos, Pose
@@ -23,7 +24,9 @@ class Bench:
     start: pose at t = 0; kinds: what its sensors measure, with the number of components; boot: brings the
     drives up, ends at t = 0; stop: brings them to rest from the time given; ticks: the plant's log from a row
     on; tick: ns; events: what the drives did that they should not have; close: gives back what it holds;
-    nodes: the drives on the bus.
+    nodes: the drives on the bus; pace: waits for a cycle's beginning, returns whether its commands may still
+    be sent; late: answers of each drive that did not come within their cycle; account: what verdict.json says
+    of the bus besides.
     """
 
     rig: Rig
@@ -39,3 +42,6 @@ class Bench:
     events: Callable[[], list[str]] = list
     close: Callable[[], None] = lambda: None
     nodes: tuple[Node, ...] = ()
+    pace: Callable[[Nanos], bool] = at_once
+    late: Callable[[], dict[str, int]] = dict
+    account: Callable[[], dict[str, Any]] = dict

@@ -6,7 +6,8 @@ from hilbed.build.bench import Bench
 from hilbed.build.minds import Surroundings, make_controller, make_estimator
 from hilbed.clock import nanos
 from hilbed.cost import Cost
-from hilbed.loop import Rig
+from hilbed.loop import Rig, at_once
+from hilbed.pacer import Pacer
 from hilbed.plant.recorded import Recorded
 from hilbed.plant.recorded_spec import RecordedSpec
 from hilbed.plant.recording import load
@@ -17,7 +18,7 @@ from hilbed.scenario.load import Loaded
 from hilbed.scene import BeaconSpec
 
 
-def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool) -> Bench:
+def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool, pacer: Pacer | None) -> Bench:
     """Returns a bench whose odometry, readings and truth come from a file; raises ScenarioError."""
     scenario, spec = loaded.scenario, loaded.scenario.plant
     assert isinstance(spec, RecordedSpec)
@@ -35,4 +36,5 @@ def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool) -> Bench:
         cost,
     )
     beacons = tuple(BeaconSpec(at=at) for at in robot.beacons)
-    return Bench(rig, robot.start, reference, (), dict.fromkeys(spec.kinds(), 1), beacons)
+    pace = at_once if pacer is None else pacer.due
+    return Bench(rig, robot.start, reference, (), dict.fromkeys(spec.kinds(), 1), beacons, pace=pace)

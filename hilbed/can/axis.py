@@ -30,7 +30,8 @@ class Axis:
     """State of one drive: raw `values` by slot, when it was heard, what it is told to do.
 
     state: bits of the statusword that tell states apart; fresh: number of the SYNC that the last position
-    answered; position: raw, at the last complete set; heard: when its last PDO came.
+    answered; position: raw, at the last complete set; heard: when its last PDO came; late: how often a SYNC
+    was not answered within its cycle.
     """
 
     __slots__ = (
@@ -44,6 +45,7 @@ class Axis:
         "controlword",
         "fresh",
         "heard",
+        "late",
         "node",
         "position",
         "radians_per_count",
@@ -62,6 +64,7 @@ class Axis:
         self.position: int | None = None
         self.heard: Nanos = 0
         self.silent = False
+        self.late = 0
         self.speed_ref = 0.0
         self.controlword = ENABLE_OPERATION
         self.radians_per_count = 1.0 / node.counts_per_radian

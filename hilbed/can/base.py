@@ -22,6 +22,9 @@ from hilbed.clock import MILLISECOND, nanos, seconds
 from hilbed.ports import Bus, Robot
 from hilbed.types import BusError, Command, Diverged, Nanos, Odometry
 
+STANDING = 0.1
+"""rad/s; a wheel that turns more slowly stands."""
+
 
 class CanBase:
     """Drives that have been booted, read and written once a cycle.
@@ -117,12 +120,30 @@ class CanBase:
         """Names of the drives that do not answer."""
         return tuple(axis.node.name for axis in self._axes if axis.silent)
 
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Names of the drives that do not say that they are no longer enabled and their wheels stand."""
+        return tuple(
+            axis.node.name
+            for axis in self._axes
+            if cia402.state_of(axis.values[STATUS]) == cia402.ENABLED
+            or not abs(axis.signals().speed_measured) < STANDING
+        )
+
+    @property
+    def late(self) -> dict[str, int]:
+        """How often each drive's answer to a SYNC had not come by the end of its cycle."""
+        return {axis.node.name: axis.late for axis in self._axes}
+
     def _odometry(self, t: Nanos) -> Odometry:
         distance = turn = 0.0
         axes, robot = self._axes, self._robot
         if self._syncs and all(axis.fresh == self._syncs for axis in axes):
             distance, turn = robot.travel([axis.turned() for axis in axes])
             self._sampled = self._sync
+        elif self._syncs:
+            for axis in axes:
+                axis.late += axis.fresh != self._syncs
         signals = {axis.node.name: axis.signals() for axis in axes}
         rates = robot.travel([signal.speed_measured for signal in signals.values()])
         if isfinite(rates[0]):  # all drives have spoken

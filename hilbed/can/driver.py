@@ -24,31 +24,47 @@ _HINTS = {
 _UP = 1  # IFF_UP
 
 
+class Names(NamedTuple):
+    """What a bus goes by; None where nobody says."""
+
+    interface: str
+    channel: str | int | None
+    bitrate: int | None
+
+    def __str__(self) -> str:
+        return self.interface if self.channel is None else f"{self.interface} {self.channel}"
+
+
 class Driver(NamedTuple):
-    """An open bus, the interface that it belongs to, and its name for messages."""
+    """An open bus and what it goes by."""
 
     bus: can.BusABC
-    interface: str
-    name: str
+    names: Names
 
 
-def open_driver(interface: str | None, channel: str | int | None, bitrate: int | None) -> Driver:
-    """Opens a bus by python-can: what is None comes from CAN_INTERFACE and the like, then from ~/.canrc.
+def resolve(
+    interface: str | None = None, channel: str | int | None = None, bitrate: int | None = None
+) -> Names:
+    """Returns the names of a bus; what is None comes from CAN_INTERFACE and the like, then from ~/.canrc.
 
-    Raises ScenarioError, with what would do, for everything that a driver may refuse.
+    Raises ScenarioError where python-can knows no such interface, or cannot read its settings.
     """
     try:
         config = can.util.load_config(config=_given(interface, channel, bitrate))
-        name = " ".join(str(config[key]) for key in ("interface", "channel") if config.get(key) is not None)
     except Exception as error:
-        raise ScenarioError(f"bus: interface {interface!r}: {_unknown(error)}") from None
-    if config["interface"] == "socketcan":
-        _check_socketcan(name, config.get("channel"))
+        raise ScenarioError(f"bus: {_unresolved(interface, error)}") from None
+    return Names(str(config["interface"]), config["channel"], config.get("bitrate"))
+
+
+def open_driver(interface: str | None, channel: str | int | None, bitrate: int | None) -> Driver:
+    """Opens the bus that `resolve` finds; ScenarioError, with what would do, for all that drivers refuse."""
+    names = resolve(interface, channel, bitrate)
+    if names.interface == "socketcan":
+        _check_socketcan(names)
     try:
-        bus = can.Bus(**_given(interface, channel, bitrate))
+        return Driver(can.Bus(**_given(interface, channel, bitrate)), names)
     except Exception as error:  # a driver may raise anything
-        raise ScenarioError(f"bus: {name} cannot be opened: {reason(error)}") from None
-    return Driver(bus, str(config["interface"]), name)
+        raise ScenarioError(f"bus: {names} cannot be opened: {reason(error)}") from None
 
 
 def reason(error: BaseException) -> str:
@@ -86,10 +102,13 @@ def _given(interface: str | None, channel: str | int | None, bitrate: int | None
     return {key: value for key, value in given.items() if value is not None}
 
 
-def _unknown(error: Exception) -> str:
-    if isinstance(error, can.CanInterfaceNotImplementedError):
-        return f"python-can knows none of that name; it knows {', '.join(sorted(can.VALID_INTERFACES))}"
-    return f"python-can's settings (CAN_CONFIG, ~/.canrc): {reason(error)}"
+def _unresolved(interface: str | None, error: Exception) -> str:
+    if not isinstance(error, can.CanInterfaceNotImplementedError):
+        return f"python-can's settings (CAN_CONFIG, ~/.canrc …): {reason(error)}"
+    known = f"python-can knows {', '.join(sorted(can.VALID_INTERFACES))}"
+    if interface is None:
+        return f"no interface that python-can knows is named by -i, CAN_INTERFACE or ~/.canrc; {known}"
+    return f"unknown interface {interface!r}; {known}"
 
 
 def _number(error: BaseException | None) -> int | None:
@@ -102,10 +121,10 @@ def _number(error: BaseException | None) -> int | None:
     return None
 
 
-def _check_socketcan(name: str, channel: object) -> None:
+def _check_socketcan(names: Names) -> None:
     """Finds what the socket would tell only later: no channel given, or an interface that is down."""
-    if not channel:
+    if not names.channel:
         raise ScenarioError("bus: socketcan needs a channel, such as -c can0")
-    flags = Path("/sys/class/net") / str(channel) / "flags"
+    flags = Path("/sys/class/net") / str(names.channel) / "flags"
     if flags.is_file() and not int(flags.read_text(), 16) & _UP:
-        raise ScenarioError(f"bus: {name} is down; `ip link set {channel} up` brings it up")
+        raise ScenarioError(f"bus: {names} is down; `ip link set {names.channel} up` brings it up")

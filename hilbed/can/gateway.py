@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from hilbed.can.cob import CONTROLLER_ID, HEARTBEAT, SYNC
+from hilbed.can.counts import Counts
 from hilbed.can.node import Node
-from hilbed.can.wire import Port, Wire
+from hilbed.can.wire import Wire
+from hilbed.ports import Bus
 from hilbed.types import BusError, Frame, Nanos
 
 _SERVICES = (0x080, 0x580, HEARTBEAT)
@@ -23,6 +25,7 @@ class Adapter(Protocol):
     """One end of the other bus; BusError where it is lost."""
 
     name: str
+    counts: Counts
 
     def send(self, frame: Frame) -> None: ...
 
@@ -54,7 +57,7 @@ class Gateway:
         self._heard = wire.attach("gateway", self._carry)
         self._stranger = None if lockstep else self._heard
         self._here = dict.fromkeys(CONTROLLER, "the controller")
-        self._elsewhere: dict[int, Port] = {}
+        self._elsewhere: dict[int, Bus] = {}
         self._taken: list[Callable[[Frame], bool]] = []
         self._stopping = False
 
@@ -90,6 +93,10 @@ class Gateway:
         for frame in frames:
             if not any(take(frame) for take in self._taken):
                 self._take_in(t, frame)
+
+    def account(self) -> dict[str, str | int]:
+        """Returns what verdict.json says: the name of the bus and what was counted there."""
+        return {"name": self.adapter.name, **vars(self.adapter.counts), "foreign": self.foreign}
 
     def stop(self) -> None:
         """From now on a lost bus is no news: what can still be sent, is; old commands are not."""

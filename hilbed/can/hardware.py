@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import select
 from collections.abc import Callable
-from dataclasses import dataclass
 from time import monotonic
 
 import can
 
+from hilbed.can.counts import Counts
 from hilbed.can.driver import frame_of, message, open_driver, reason
 from hilbed.can.driver_threads import Receiver, Sender
 from hilbed.types import BusError, Frame
@@ -23,17 +23,6 @@ _BUS_OFF_WORDS = "the adapter is bus-off: is a node on the bus to acknowledge, w
 Receive = Callable[[float], "can.Message | None"]
 
 
-@dataclass
-class Counts:
-    """Frames sent, dropped (not sent) and received; error frames; received ones that are no CAN 2.0 frame."""
-
-    sent: int = 0
-    dropped: int = 0
-    received: int = 0
-    errors: int = 0
-    malformed: int = 0
-
-
 class Adapter:
     """One end of a python-can bus.
 
@@ -45,9 +34,9 @@ class Adapter:
         self, interface: str | None, channel: str | int | None = None, bitrate: int | None = None
     ) -> None:
         self._driver = open_driver(interface, channel, bitrate)
-        self.name = self._driver.name
+        self.name = str(self._driver.names)
         self.counts = Counts()
-        self._sender = None if self._driver.interface in PROMPT else Sender(self._driver.bus)
+        self._sender = None if self._driver.names.interface in PROMPT else Sender(self._driver.bus)
         self._receiver: Receiver | None = None
         self._next = self._choose()
 
@@ -115,8 +104,8 @@ class Adapter:
             self.counts.errors += 1
             if received.arbitration_id & _BUS_OFF or self._driver.bus.state is can.BusState.ERROR:
                 raise self._lost("receiving", _BUS_OFF_WORDS)
-        elif not received.is_rx:
-            return  # an own frame, which some drivers return
+        elif not received.is_rx and self._driver.names.interface != "socketcan":
+            return  # an own frame, which some drivers return; SocketCAN marks all that this machine sends
         elif (frame := frame_of(received)) is None:
             self.counts.malformed += 1
         else:
@@ -135,7 +124,7 @@ class Adapter:
             number = -1
         if number >= 0:
             return _polled(bus, number)
-        if self._driver.interface in PROMPT:
+        if self._driver.names.interface in PROMPT:
             return bus.recv
         self._receiver = Receiver(bus)
         return self._receiver.take

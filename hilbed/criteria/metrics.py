@@ -73,6 +73,11 @@ _RUN_UNITS = {
         "bus_latency_mean": "s",
         "bus_latency_max": "s",
     },
+    "realtime": {
+        "missed_deadlines": "",
+        "lateness_p99": "s",
+        "lateness_max": "s",
+    },
 }
 _DRIVE_UNITS = {
     "speed_rms_error": "rad/s",

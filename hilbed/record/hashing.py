@@ -16,6 +16,8 @@ from hilbed.record.row import Batch
 _FRAME = Struct("<qqqI??BB").pack
 
 BUS_PREFIX = "bus/"
+WALL_PREFIX = "realtime/"
+"""Columns that tell of the wall clock, which is in no fingerprint."""
 
 
 class BusDigest:
@@ -56,7 +58,7 @@ def signals_hash(signals: Mapping[str, npt.NDArray[Any]]) -> str:
 
 def _digest(signals: Mapping[str, npt.NDArray[Any]], names: list[str]) -> bytes:
     sha = sha256()
-    for name in sorted(names):
+    for name in sorted(name for name in names if not name.startswith(WALL_PREFIX)):
         array = _canonical(signals[name])
         sha.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
         sha.update(array.tobytes())

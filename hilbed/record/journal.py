@@ -19,9 +19,9 @@ HELPING: Nanos = SECOND // 2
 class Journal:
     """The recorder of a run in front of any number of sinks.
 
-    Cycles and what witnesses have noted are kept for half a second of simulated time and then handed on at
-    once: in big helpings, while the caches are warm, the work takes half as long. Cycles are values, so
-    nobody may write to their arrays afterwards.
+    Cycles and what witnesses have noted are kept for `helping` (half a second) and then handed on at once:
+    in big helpings, while the caches are warm, the work takes half as long. Cycles are values, so nobody may
+    write to their arrays afterwards.
     """
 
     def __init__(
@@ -31,12 +31,15 @@ class Journal:
         cost: Cost,
         start: Pose,
         reference: Reference | None = None,
+        helping: Nanos = HELPING,
     ) -> None:
+        """helping: ns of simulated time; in real time small ones are better, which hold up no cycle."""
         self._notes = notes
         self._sinks = list(sinks)
         self._cost = cost
         self._reckoning = DeadReckoning(start)
         self._reference = reference
+        self._helping = helping
         self._cycles: list[Cycle] = []
         self._ticks: list[Mapping[str, Array]] = []
 
@@ -55,7 +58,7 @@ class Journal:
         """
         start = perf_counter()
         self._cycles.append(cycle)
-        if cycle.t >= self._cycles[0].t + HELPING:
+        if cycle.t >= self._cycles[0].t + self._helping:
             self._hand_on()
         self._cost.record += perf_counter() - start
 

@@ -6,11 +6,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from hilbed.can.specs import BusSpec, NodeSpec
+from hilbed.can.specs import BusSpec, NodeSpec, TerminalSpec
 from hilbed.control import ControllerSpec, ReferenceSpec
 from hilbed.criteria import CriterionSpec
 from hilbed.disturbances import DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
+from hilbed.pacer import RealtimeSpec
 from hilbed.plant import PlantSpec
 from hilbed.robots import RobotSpec
 from hilbed.sensors import SensorSpec
@@ -20,7 +21,11 @@ ByKind = Field(discriminator="kind")
 
 
 class Scenario(Spec):
-    """One experiment: duration and period in s; blocks as their own models say."""
+    """One experiment: duration and period in s; blocks as their own models say.
+
+    terminal: a channel of its own for the pins of `ecu` nodes, else the bus carries them; real_speed_limit:
+    m/s of the rim of a wheel whose drive is real.
+    """
 
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     duration: Positive
@@ -29,11 +34,14 @@ class Scenario(Spec):
     plant: Annotated[PlantSpec, ByKind, Word]
     nodes: dict[str, Annotated[NodeSpec, Word]] = {}
     bus: Annotated[BusSpec, Word] = BusSpec()
+    terminal: TerminalSpec | None = None
+    real_speed_limit: Positive = 0.1
     sensors: dict[str, Annotated[SensorSpec, Word]] = {}
     estimator: Annotated[EstimatorSpec, ByKind, Word]
     controller: Annotated[ControllerSpec, ByKind, Word] | None = None
     reference: Annotated[ReferenceSpec, ByKind] | None = None
     disturbances: list[Annotated[DisturbanceSpec, ByKind]] = []
     criteria: dict[str, CriterionSpec] = {}
+    realtime: RealtimeSpec | None = None
     record: Literal["all", "signals", "none"] = "all"
     versions: dict[str, str] = {}

@@ -1,0 +1,94 @@
+"""What is done with a bench of drives before its first cycle and after its last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from hilbed.build.bench import BOOT
+from hilbed.build.carriage import Carriage
+from hilbed.can.base import CanBase
+from hilbed.can.ears import BusEvent
+from hilbed.can.master import Master
+from hilbed.clock import SECOND, seconds
+from hilbed.types import BusError, Command, Nanos
+
+STANDSTILL: Nanos = SECOND
+"""How long the bench goes on after the last cycle at most, so that the drives come to rest."""
+
+
+NOT_STOPPED = f"has not come to rest within {seconds(STANDSTILL):g} s of the quick stop"
+
+
+class Plant(Protocol):
+    """The far end, which can also be run with the shafts held."""
+
+    def idle(self, start: Nanos, end: Nanos) -> None: ...
+
+    def start(self) -> None: ...
+
+    def advance(self, start: Nanos, end: Nanos) -> None: ...
+
+
+@dataclass(frozen=True)
+class Hands:
+    """Boots and stops a bench; tick and period in ns; flush: what is still on its way to sensors comes in.
+
+    power: switches firmware that is elsewhere on.
+    """
+
+    master: Master
+    base: CanBase
+    plant: Plant
+    carriage: Carriage
+    flush: Sequence[Callable[[], None]]
+    tick: Nanos
+    period: Nanos
+    power: Callable[[Nanos], None] | None = None
+
+    def boot(self) -> None:
+        """Brings the drives up, from `BOOT` before t = 0 on."""
+        if self.power is not None:
+            self.power(-BOOT)
+        self.carriage.start(-BOOT)
+        self.master.boot(self._pump, -BOOT, 0)
+        self.plant.start()
+
+    def _pump(self, t: Nanos) -> Nanos:
+        self.plant.idle(t, t + self.tick)
+        return t + self.tick
+
+    def stop(self, t: Nanos) -> None:
+        """Stops the drives quickly, from `t` or where the bench has got to, and waits for their rest."""
+        now = self.carriage.wire.now
+        t = max(t, -(-now // self.tick) * self.tick)
+        self.carriage.stop()
+        self.base.stop(t)
+        events = self.base.ears.events
+        known = len(events)
+        try:
+            self._settle(t)
+        finally:
+            del events[known:]  # of drives that stop as they are told
+            events += [BusEvent(t, name, NOT_STOPPED) for name in self.base.moving]
+            for flush in self.flush:
+                flush()
+
+    def _settle(self, t: Nanos) -> None:
+        """Goes on with SYNC and heartbeats, nothing but quick stop in the PDOs, until all drives rest."""
+        end = t + STANDSTILL
+        try:
+            while t < end:
+                self.plant.advance(t, t + self.period)
+                t += self.period
+                self.base.read(t)
+                if not self.base.moving:
+                    return
+                self.base.write(t, Command(0.0, 0.0))
+        except BusError:  # a drive is silent: nothing more can be told to it
+            self.plant.advance(t, end)
+
+    def events(self) -> list[str]:
+        """Returns what the drives did that they should not have, one a line."""
+        return [f"t = {seconds(e.t):.3f} s: {e.drive}: {e.text}" for e in self.base.ears.events]

@@ -1,0 +1,99 @@
+"""The bench in real time: simulated time waits for the wall clock, by absolute deadlines.
+
+Who comes too late for a deadline does not hurry to catch up with commands: the world goes on, the commands
+of that cycle are not sent, and the next deadlines stay where they were.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Literal, NamedTuple, Protocol
+
+from hilbed.clock import seconds
+from hilbed.ledger import Ledger
+from hilbed.spec import Positive, Spec
+from hilbed.types import HilbedError, Nanos
+
+MOST_BEHIND: Nanos = 1_000_000_000
+"""A bench that is this late has lost real time for good."""
+
+
+class RealtimeSpec(Spec):
+    """Pace of a run: a second of the wall clock for each simulated one.
+
+    overrun: of a cycle that begins late by more than `tolerance` (s, half a period by default): skip (its
+    commands are not sent, the schedule is kept) or fail (the run).
+    """
+
+    overrun: Literal["skip", "fail"] = "skip"
+    tolerance: Positive | None = None
+
+
+class Overrun(HilbedError):
+    """A cycle has begun too late and the scenario does not stand that."""
+
+
+class Time(NamedTuple):
+    """A clock that never goes back (ns) and a sleep (s)."""
+
+    now: Callable[[], Nanos] = time.monotonic_ns
+    sleep: Callable[[float], None] = time.sleep
+
+
+class Medium(Protocol):
+    """A bus in simulated time."""
+
+    def advance(self, until: Nanos) -> None: ...
+
+
+class Pacer:
+    """Keeps a run with cycles of `period` ns to the wall clock and its ledger of how well that went."""
+
+    def __init__(self, spec: RealtimeSpec, period: Nanos, wall: Time | None = None) -> None:
+        self.ledger = Ledger()
+        self.period = period
+        self._fails = spec.overrun == "fail"
+        self._tolerance = period // 2 if spec.tolerance is None else round(spec.tolerance * 1e9)
+        self._wall = wall or Time()
+        self._zero: Nanos | None = None
+
+    def start(self, t: Nanos) -> None:
+        """Declares that it is `t` now."""
+        self._zero = self._wall.now() - t
+
+    def wait(self, t: Nanos) -> Nanos:
+        """Waits until it is `t`; returns by how much it is later then (ns)."""
+        if self._zero is None:
+            self.start(t)
+            return 0
+        deadline = self._zero + t
+        while (left := deadline - self._wall.now()) > 0:
+            self._wall.sleep(left / 1e9)
+        return -left
+
+    def due(self, t: Nanos) -> bool:
+        """Waits for a cycle's beginning; returns whether its commands may still be sent. Raises Overrun."""
+        late = self.wait(t)
+        missed = late > self._tolerance
+        self.ledger.note(t, late, missed)
+        if missed and (self._fails or late > MOST_BEHIND):
+            raise Overrun(f"real time lost: the cycle began {seconds(late):.4f} s late")
+        return not missed
+
+
+class Paced:
+    """A medium whose time does not run ahead of the wall clock's.
+
+    The beginning of a cycle is waited for by `Pacer.due`: what ends a cycle, the records, may take its time.
+    """
+
+    def __init__(self, medium: Medium, pacer: Pacer) -> None:
+        self._medium = medium
+        self._pacer = pacer
+
+    def advance(self, until: Nanos) -> None:
+        """Lets happen what happens by `until`, then waits for it."""
+        self._medium.advance(until)
+        if until % self._pacer.period:
+            self._pacer.wait(until)
