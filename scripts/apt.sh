@@ -11,7 +11,7 @@ apt_install() {
     say "apt-get install $*"
     {
         command -v flock >/dev/null && flock 9
-        apt-get update && apt-get install -y --no-install-recommends "$@"
+        apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
     } 9</var/lib/apt >"$log" 2>&1 </dev/null || status=$?
     [ "$status" = 0 ] || cat "$log" >&2
     rm -f "$log"
