@@ -1,4 +1,4 @@
-"""The state machine: against a table of its own making, and against the canopen library's."""
+"""The state machine as a master on the bus sees it: against the profile and the canopen library."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import math
 import pytest
 from canopen.profiles.p402 import State402
 
-from firmware_sim.cia402 import TRANSITIONS, Command, State, decode
+from firmware_sim.cia402 import TRANSITIONS, Command, State
+from tests.firmware import profile
+from tests.firmware.specification import WORDS
 from tests.firmware.wire import Wire, enabled, operational
 
 NAMES = {
@@ -20,14 +22,6 @@ NAMES = {
     State.QUICK_STOP: "QUICK STOP ACTIVE",
     State.REACTION: "FAULT REACTION ACTIVE",
     State.FAULT: "FAULT",
-}
-WORDS = {
-    Command.SHUTDOWN: 0x06,
-    Command.SWITCH_ON: 0x07,
-    Command.ENABLE: 0x0F,
-    Command.DISABLE_VOLTAGE: 0x00,
-    Command.QUICK_STOP: 0x02,
-    Command.FAULT_RESET: 0x80,
 }
 
 
@@ -48,26 +42,6 @@ def test_the_library_knows_the_same_states_and_transitions() -> None:
         ("READY TO SWITCH ON", 0x02),
         ("SWITCHED ON", 0x02),
     }
-
-
-@pytest.mark.parametrize("word", range(0, 0x10000, 0x101))
-def test_commands_by_their_bits(word: int) -> None:
-    def bits(pattern: str) -> bool:
-        """The profile's notation: bit 7, then bits 3 to 0, x for any."""
-        actual = f"{word >> 7 & 1}{word & 0xF:04b}"
-        return all(p in ("x", a) for p, a in zip(pattern, actual, strict=True))
-
-    patterns = {
-        Command.SHUTDOWN: "0x110",
-        Command.SWITCH_ON: "00111",
-        Command.ENABLE: "01111",
-        Command.DISABLE_VOLTAGE: "0xx0x",
-        Command.QUICK_STOP: "0x01x",
-    }
-    expected = [command for command, pattern in patterns.items() if bits(pattern)]
-    found = decode(0x80, word)
-    assert [found] == expected or (not expected and found is None)
-    assert (decode(0x00, word) is Command.FAULT_RESET) == bool(word & 0x80)
 
 
 def walk(state: State) -> Wire:
@@ -102,10 +76,10 @@ REACHABLE = [state for state in State if state is not State.NOT_READY]
 def test_every_command_in_every_state(state: State, command: Command) -> None:
     wire = walk(state)
     wire.node.sdo[0x605C].raw = 0  # disable operation: at once
-    expected = TRANSITIONS.get((state, command), state)
+    expected = profile.TRANSITIONS.get((state, command), state)
     wire.command(WORDS[command])
     assert wire.state() == NAMES[expected]
-    assert wire.drive.bridge_enabled == (expected in (State.ENABLED, State.QUICK_STOP, State.REACTION))
+    assert wire.drive.bridge_enabled == (expected in profile.POWERED)
 
 
 def test_fault_reset_acts_by_its_edge() -> None:
@@ -140,6 +114,18 @@ def falling(wire: Wire, ticks: int = 10) -> float:
     return (before - after) / (ticks * 1e-3) if after else math.inf
 
 
+def check_stopping(wire: Wire, rate: float | None) -> None:
+    """Sees the drive come to rest at this rate (rad/s²), or coast where it is None."""
+    if rate is None:
+        assert not wire.drive.bridge_enabled
+    elif rate == math.inf:
+        wire.run(1)
+        assert wire.drive.speed_ref == 0.0
+    else:
+        assert falling(wire) == pytest.approx(rate, rel=1e-3)
+    wire.run(600)
+
+
 SLOW, QUICK = 105_000 / 66_000 * math.tau, 525_000 / 66_000 * math.tau
 
 
@@ -159,16 +145,10 @@ def test_quick_stop_options(option: int, rate: float | None, end: str) -> None:
     wire = moving()
     wire.node.sdo[0x605A].raw = option
     wire.command(0x02)
-    if rate is None:
-        assert not wire.drive.bridge_enabled
-    elif rate == math.inf:
-        wire.run(1)
-        assert wire.drive.speed_ref == 0.0
-    else:
+    if rate is not None:
         assert wire.state() == "QUICK STOP ACTIVE"
         wire.command(0x02)  # said again it changes nothing
-        assert falling(wire) == pytest.approx(rate, rel=1e-3)
-    wire.run(600)
+    check_stopping(wire, rate)
     assert wire.state() == end
     assert wire.drive.speed_ref == 0.0
 
@@ -241,15 +221,8 @@ def test_fault_reaction_options(option: int, rate: float | None) -> None:
     wire.run(4)
     assert wire.state() == "OPERATION ENABLED"  # a short sag is no fault
     wire.run(1)
-    if rate is None:
-        assert not wire.drive.bridge_enabled
-    elif rate == math.inf:
-        wire.run(1)
-        assert wire.drive.speed_ref == 0.0
-    else:
-        assert wire.state() == "FAULT REACTION ACTIVE"
-        assert falling(wire) == pytest.approx(rate, rel=1e-3)
-    wire.run(600)
+    assert wire.state() == ("FAULT" if rate in (None, math.inf) else "FAULT REACTION ACTIVE")
+    check_stopping(wire, rate)
     assert wire.state() == "FAULT"
     assert [e.code for e in wire.node.emcy.log] == [0x3220]
     assert wire.node.sdo[0x1001].raw == 0x05
