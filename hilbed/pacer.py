@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Literal, NamedTuple, Protocol
 
 from hilbed.clock import seconds
+from hilbed.cost import Cost, perf_counter
 from hilbed.ledger import Ledger
 from hilbed.spec import Positive, Spec
 from hilbed.types import HilbedError, Nanos
@@ -48,10 +49,16 @@ class Medium(Protocol):
 
 
 class Pacer:
-    """Keeps a run with cycles of `period` ns to the wall clock and its ledger of how well that went."""
+    """Keeps a run with cycles of `period` ns to the wall clock and its ledger of how well that went.
 
-    def __init__(self, spec: RealtimeSpec, period: Nanos, wall: Time | None = None) -> None:
+    cost: of the run, whose time on the bus is not to hold the waiting.
+    """
+
+    def __init__(
+        self, spec: RealtimeSpec, period: Nanos, cost: Cost | None = None, wall: Time | None = None
+    ) -> None:
         self.ledger = Ledger()
+        self.cost = cost or Cost()
         self.period = period
         self._fails = spec.overrun == "fail"
         self._tolerance = period // 2 if spec.tolerance is None else round(spec.tolerance * 1e9)
@@ -96,4 +103,6 @@ class Paced:
         """Lets happen what happens by `until`, then waits for it."""
         self._medium.advance(until)
         if until % self._pacer.period:
+            begun = perf_counter()
             self._pacer.wait(until)
+            self._pacer.cost.bus -= perf_counter() - begun

@@ -100,7 +100,7 @@ def perform(
     Raises ScenarioError for what is found before the first cycle, when nothing has been written yet.
     """
     cost, notes, ending = Cost(), Notes(), _Ending()
-    pacer = _pacer(loaded.scenario)
+    pacer = _pacer(loaded.scenario, cost)
     bench = build(loaded, notes, cost, separate, pacer)
     columns, bus = Columns(bench.drives, bench.kinds), BusDigest()
     try:
@@ -137,8 +137,9 @@ def perform(
     return Outcome(_status(content, ending), content, ending.trace)
 
 
-def _pacer(scenario: Scenario) -> Pacer | None:
-    return None if scenario.realtime is None else Pacer(scenario.realtime, nanos(scenario.period))
+def _pacer(scenario: Scenario, cost: Cost) -> Pacer | None:
+    spec = scenario.realtime
+    return None if spec is None else Pacer(spec, nanos(scenario.period), cost)
 
 
 def _parts(bench: Bench, pacer: Pacer | None) -> dict[str, Any]:

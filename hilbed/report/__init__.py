@@ -36,7 +36,7 @@ def _summary(run: Run) -> str:
 
 
 def _figures(run: Run) -> str:
-    from hilbed.report import bus_figures, drive_figures, pose_figures, sensor_figures, style
+    from hilbed.report import bus_figures, drive_figures, pose_figures, sensor_figures, style, time_figures
 
     with style.drawing():
         cards = [
@@ -51,6 +51,7 @@ def _figures(run: Run) -> str:
             page.card("Innovations", sensor_figures.nis(run)),
             page.card("Bus load in each 0.1 s", bus_figures.bus_load(run)),
             page.card("Bus latency by identifier", bus_figures.latency(run)),
+            page.card("Real time", time_figures.lateness(run), time_figures.summary(run)),
         ]
     return "".join(cards)
 
