@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import cantools
-from cantools.database.can import Database, Message
+from cantools.database.can import Database, Message, Signal
 
 from hilbed.can import cia402, emergency
 from hilbed.can.dbc import database
@@ -15,7 +15,7 @@ from hilbed.can.drive_table import DriveTable
 from hilbed.can.node import Node
 from hilbed.types import Frame, ScenarioError
 
-_HEX = ("controlword", "statusword", "code", "index")
+_HEX = ("controlword", "statusword", "code", "register", "maker", "command", "index", "subindex", "data")
 _KNOWN_NODES = range(1, 128)
 _FORMATS = ("arxml", "kcd", "sym")
 
@@ -64,21 +64,23 @@ def _content(message: Message, data: bytes) -> str:
     values = message.decode(data[: message.length])
     assert isinstance(values, dict)
     signals = sorted(message.signals, key=lambda signal: signal.start)
-    return "  ".join(_value(signal.name, values[signal.name], signal.unit or "") for signal in signals)
+    return "  ".join(f"{signal.name}={_value(signal, values[signal.name])}" for signal in signals)
 
 
-def _value(name: str, value: object, unit: str) -> str:
+def _value(signal: Signal, value: object) -> str:
+    unit = f" {signal.unit}" if signal.unit else ""
     if isinstance(value, float):
-        return f"{name}={value:.5g}{unit and ' ' + unit}"
-    if isinstance(value, int) and name.endswith(_HEX):
-        return f"{name}={value:04X}{_meaning(name, value)}"
-    return f"{name}={value}{unit and ' ' + unit}"
+        return f"{value:.5g}{unit}"
+    word = signal.name.rpartition("_")[2]
+    if isinstance(value, int) and word in _HEX:
+        return f"{value:0{signal.length // 4}X}{_meaning(word, value)}"
+    return f"{value}{unit}"
 
 
-def _meaning(name: str, value: int) -> str:
-    if name.endswith("statusword"):
+def _meaning(word: str, value: int) -> str:
+    if word == "statusword":
         return f" ({cia402.state_of(value)})"
-    if name.endswith("code") and value:
+    if word == "code" and value:
         return f" ({emergency.meaning(value)})"
     return ""
 
