@@ -9,6 +9,7 @@ from hilbed.can.cob import CONTROLLER_ID
 from hilbed.can.link import Link, Pump
 from hilbed.can.node import Node
 from hilbed.can.sdo import SdoClient
+from hilbed.can.twins import Twins
 from hilbed.clock import MILLISECOND
 from hilbed.ports import Bus
 from hilbed.types import BusError, Nanos
@@ -36,7 +37,8 @@ class Master:
         self._bus.recv(start)  # a boot-up from before the reset must not be taken for the one after it
         link = Link(self._bus, pump, start, ready)
         heard = nmt.HeartbeatConsumer()
-        link.listeners.append(heard.hear)
+        twins = Twins(heard)
+        link.listeners += [heard.hear, twins.hear]
         shortest = min((node.table.heartbeat.controller for node in self._nodes), default=100)
         link.each_step.append(nmt.HeartbeatProducer(self._bus, CONTROLLER_ID, shortest * MILLISECOND).tick)
         for node in self._nodes:
@@ -44,14 +46,16 @@ class Master:
         for node in self._nodes:
             _await_boot_up(link, heard, node)
         for node in self._nodes:
-            self._bring_up(link, heard, node)
+            twins.watch(node)
+            twins.check(node, self._bring_up(link, heard, node))
         link.pause(SETTLING)
         for node in self._nodes:
             _check_enabled(SdoClient(link, node.name, node.id), node)
         link.pause(ready - link.t)
         return link.t
 
-    def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> None:
+    def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> int:
+        """Identifies, configures, starts and enables a node; returns how many SDO requests that took."""
         sdo = SdoClient(link, node.name, node.id)
         _identify(sdo, node)
         for entry, value in configuration.steps(node, self._period):
@@ -62,6 +66,7 @@ class Master:
             state = nmt.STATE_NAMES.get(heard.states.get(node.id, -1), "silent")
             raise BusError(f"{node}: told to start, but its heartbeat (1017) says {state}")
         _enable(link, sdo, node)
+        return sdo.asked
 
 
 def _await_boot_up(link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> None:

@@ -36,9 +36,13 @@ class SdoError(BusError):
 
 
 class SdoClient:
-    """The controller's side of one drive's SDO server; every failure is a BusError that names all of it."""
+    """The controller's side of one drive's SDO server; every failure is a BusError that names all of it.
+
+    asked: how many requests were sent that are answered by one frame each.
+    """
 
     def __init__(self, link: Link, name: str, node: int, timeout: Nanos = 100 * MILLISECOND) -> None:
+        self.asked = 0
         self._link = link
         self._who = f"drive {name} (node {node})"
         self._node = node
@@ -123,6 +127,7 @@ class SdoClient:
 
         request_object = _HEAD.pack(0, index, sub, 0)[1:4]
         self._link.forget()
+        self.asked += 1
         self._link.send(Frame(SDO_REQUEST + self._node, request))
         answer = self._link.answer(accept, self._timeout)
         if answer is None:
