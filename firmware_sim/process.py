@@ -59,18 +59,18 @@ def serve(bus: can.BusABC, terminal: Terminal) -> NoReturn:
             message = bus.recv()
             if message is None or message.is_error_frame or message.is_fd:
                 continue
-            for frame in terminal.receive(_frame(message)):
-                bus.send(_message(frame), SEND_TIMEOUT)
+            for frame in terminal.receive(as_frame(message)):
+                bus.send(as_message(frame), SEND_TIMEOUT)
     except (can.CanError, OSError) as error:
         raise BusLost(str(error)) from error
 
 
-def _frame(message: can.Message) -> Frame:
+def as_frame(message: can.Message) -> Frame:
     data = b"" if message.is_remote_frame else bytes(message.data)
     return Frame(message.arbitration_id, data, message.is_extended_id, message.is_remote_frame)
 
 
-def _message(frame: Frame) -> can.Message:
+def as_message(frame: Frame) -> can.Message:
     return can.Message(
         arbitration_id=frame.id,
         data=frame.data,

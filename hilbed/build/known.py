@@ -33,7 +33,12 @@ def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> 
 
 
 def _told(node: Node, spec: SimulatedSpec) -> Node:
-    """Returns a node that is told at boot what it drives, where the scenario does not say otherwise."""
+    """Returns a node that is told at boot what it drives, where the scenario does not say otherwise.
+
+    A real drive knows its motor better than the scenario does.
+    """
+    if node.kind == "real":
+        return node
     plate = {
         "counts_per_turn": spec.encoder.resolution,
         "resistance": spec.motor.resistance,

@@ -4,27 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import NamedTuple
 
 from hilbed import rng
-from hilbed.build.bench import BOOT, Bench
+from hilbed.build import elsewhere
+from hilbed.build.axes import Workshop
+from hilbed.build.bench import Bench
+from hilbed.build.carriage import join
+from hilbed.build.hands import Hands
 from hilbed.build.known import nodes_of, start_of, surroundings
 from hilbed.build.minds import make_controller, make_estimator
 from hilbed.can.base import CanBase
-from hilbed.can.channels import lend
 from hilbed.can.master import Master
-from hilbed.can.node import Node
 from hilbed.can.wire import Wire
-from hilbed.clock import MILLISECOND, nanos, seconds
+from hilbed.clock import nanos
 from hilbed.cost import Cost
 from hilbed.disturbances import DISTURBANCES
 from hilbed.disturbances.schedule import Schedule
 from hilbed.effects import Effects
 from hilbed.loop import Rig
-from hilbed.plant.axes import Axis, SimulatedAxis
+from hilbed.pacer import Pacer
 from hilbed.plant.bullet import BulletWorld
-from hilbed.plant.drivetrain import DriveTrain, reflected_inertia
-from hilbed.plant.encoder import Encoder
+from hilbed.plant.drivetrain import reflected_inertia
 from hilbed.plant.simulated import SimulatedPlant
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.plant.supply import Supply
@@ -36,14 +38,33 @@ from hilbed.scenario.load import Loaded
 from hilbed.scenario.model import Scenario
 from hilbed.sensors.camera import Camera, open_eye
 from hilbed.sensors.eye import Eye
-from hilbed.types import Nanos
-
-STANDSTILL: Nanos = 500 * MILLISECOND
-"""How long the bench goes on after the last cycle, so that the drives come to rest."""
 
 
-def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> Bench:
-    """Returns the whole bench in simulated time; raises ScenarioError where URDF or renderer refuse."""
+def simulated(
+    loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: Pacer | None = None
+) -> Bench:
+    """Returns the whole bench, in simulated time or, with a pacer, in real time.
+
+    Raises ScenarioError where URDF, renderer or bus refuse.
+    """
+    with ExitStack() as closing:
+        bench = _bench(loaded, _Means(witness, cost, separate, pacer), closing)
+        close = closing.pop_all().close
+    return replace(bench, close=close)
+
+
+class _Means(NamedTuple):
+    """What a bench is given: who hears, what it costs, cameras in processes of their own, the wall clock."""
+
+    witness: Witness
+    cost: Cost
+    separate: bool
+    pacer: Pacer | None
+
+
+def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
+    """Builds everything; what has to be given back is left in `closing`."""
+    witness, cost, separate, pacer = means
     scenario, spec = loaded.scenario, loaded.scenario.plant
     assert isinstance(spec, SimulatedSpec)
     robot = ROBOTS[scenario.robot.kind](scenario.robot)
@@ -55,16 +76,20 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> B
     schedule = _schedule(scenario, robot.drives, effects)
     eyes = [open_eye(sensor, spec.beacons, cost, separate) for sensor in scenario.sensors.values()]
     sensors = _sensors(scenario, eyes, effects, witness)
+    for sensor in sensors:
+        closing.callback(sensor.close)
     body = _body(loaded)
     inertia = reflected_inertia(spec.motor, spec.gear)
     world = BulletWorld(body, spec, start, inertia, cost)
+    closing.callback(world.close)
     wire = Wire(scenario.bus.bitrate, witness.transfer)
-    guests = ExitStack()
-    if scenario.bus.channel is not None:
-        guests.enter_context(lend(scenario.bus.channel, wire))
     port = wire.attach("controller")
-    axes = [_axis(node, spec, moved_inertia(body, inertia), wire) for node in nodes]
-    plant = SimulatedPlant(axes, world, Supply(spec.supply), schedule, wire, sensors, tick, cost)
+    carriage = join(wire, scenario.bus, nodes, pacer, closing)
+    elsewhere.check(nodes, carriage, scenario.terminal)
+    terminals = elsewhere.terminals_of(nodes, carriage, scenario.terminal, closing)
+    axes = Workshop(spec, moved_inertia(body, inertia), wire, terminals).axes(nodes)
+    supply, collect = Supply(spec.supply), None if terminals is None else terminals.collect
+    plant = SimulatedPlant(axes, world, supply, schedule, carriage.medium, sensors, tick, cost, collect)
     base = CanBase(robot, port, nodes, scenario.bus)
     rig = Rig(
         base,
@@ -76,45 +101,15 @@ def simulated(loaded: Loaded, witness: Witness, cost: Cost, separate: bool) -> B
         cost,
     )
 
-    hands = _Hands(Master(nodes, port, period), base, plant, sensors, tick)
-    guests.callback(world.close)
-    for sensor in sensors:
-        guests.callback(sensor.close)
+    flush = [sensor.flush for sensor in sensors]
+    power = None if terminals is None else terminals.power
+    hands = Hands(Master(nodes, port, period), base, plant, carriage, flush, tick, period, power)
     kinds = {"azimuth": 1} if sensors else {}
     return Bench(
         rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
-        hands.boot, hands.stop, plant.ticks, hands.events, guests.close, nodes,
+        hands.boot, hands.stop, plant.ticks, hands.events, closing.close, nodes,
+        carriage.due, lambda: base.late, carriage.account,
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class _Hands:
-    """What is done with a simulated bench before its first cycle and after its last; tick in ns."""
-
-    master: Master
-    base: CanBase
-    plant: SimulatedPlant
-    sensors: tuple[Camera, ...]
-    tick: Nanos
-
-    def boot(self) -> None:
-        self.master.boot(self._pump, -BOOT, 0)
-        self.plant.start()
-
-    def _pump(self, t: Nanos) -> Nanos:
-        self.plant.idle(t, t + self.tick)
-        return t + self.tick
-
-    def stop(self, t: Nanos) -> None:
-        self.base.stop(t)
-        try:
-            self.plant.advance(t, t + STANDSTILL)
-        finally:
-            for sensor in self.sensors:
-                sensor.flush()
-
-    def events(self) -> list[str]:
-        return [f"t = {seconds(e.t):.3f} s: {e.drive}: {e.text}" for e in self.base.ears.events]
 
 
 def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:
@@ -140,8 +135,3 @@ def _sensors(
 def _body(loaded: Loaded) -> Body:
     robot = loaded.scenario.robot
     return diffdrive(files.resolve(robot.urdf, loaded.folder), robot.wheel_radius, robot.track)
-
-
-def _axis(node: Node, spec: SimulatedSpec, inertia: float, wire: Wire) -> Axis:
-    train = DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick, inertia)
-    return SimulatedAxis(node.name, node.id, train, Encoder(spec.encoder, spec.tick), wire.attach)

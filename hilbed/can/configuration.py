@@ -32,6 +32,8 @@ def steps(node: Node, period: Nanos) -> Iterator[Step]:
     for key, value in node.settings.items():
         setting = table.settings[key]
         yield setting, setting.raw(value)
+    if node.max_speed is not None and "max_velocity" in table.objects:
+        yield table.objects["max_velocity"], abs(node.max_speed * node.velocity_per_radian)
     for name, pdo in table.pdos.items():
         yield from _pdo(node, name, pdo)
     yield table.objects["mode"], table.modes[node.mode]

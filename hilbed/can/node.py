@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
 
 from hilbed.can.drive_table import DriveTable
+
+Kind: TypeAlias = Literal["simulated", "ecu", "real"]
+"""Where a drive is: all of it here; its firmware elsewhere; all of it elsewhere."""
 
 
 @dataclass(frozen=True)
@@ -13,7 +17,8 @@ class Node:
     """A drive by name and node number, its type's table, and what the scenario sets.
 
     settings: words and numbers by their key in the table's `settings`; mode: key of the table's `modes`;
-    axis: which one of the node's, from 1.
+    axis: which one of the node's, from 1; kind: where it is; max_speed: rad/s of the wheel that the drive is
+    told at boot never to exceed, None for its own.
     """
 
     name: str
@@ -22,6 +27,8 @@ class Node:
     mode: str = "csv"
     settings: Mapping[str, float | str] = field(default_factory=dict)
     axis: int = 1
+    kind: Kind = "simulated"
+    max_speed: float | None = None
 
     @property
     def counts_per_turn(self) -> float:

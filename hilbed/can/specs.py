@@ -3,31 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from hilbed.can.drive_table import load_table
-from hilbed.can.node import Node
+from hilbed.can.node import Kind, Node
 from hilbed.spec import Finite, NonNegative, Positive, Spec
 from hilbed.types import ScenarioError
 
 BIT_RATES = (10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 800_000, 1_000_000)
 DEFAULT_IDS = {"left": 1, "right": 2, "traction": 1, "steering": 2}
-_LATER = ("ecu", "real")
+WIRE = "hilbed"
+"""The wire's own name as an interface of python-can."""
 
 
 class BusSpec(Spec):
-    """The simulated wire: bit rate in bit/s, one of CiA's; what happens when a drive goes silent.
+    """The simulated wire, what it is joined to, and what happens when a drive goes silent.
 
-    silent: hold (go on with what was heard last), quick_stop (of all drives) or fail (the run);
-    silent_after: s without a PDO of a drive; channel: name by which python-can buses of this process may
-    join, can.Bus(interface="hilbed", channel=…), null for none.
+    bitrate: bit/s, one of CiA's; interface, channel: of the python-can bus to which the wire is joined, null
+    for none. The interface hilbed, also meant by a channel alone, is the wire itself: python-can buses of
+    this process join by can.Bus(interface="hilbed", channel=…). silent: hold (go on with what was heard
+    last), quick_stop (of all drives) or fail (the run); silent_after: s without a PDO of a drive.
     """
 
     kind: Literal["wire"] = "wire"
     bitrate: int = 500_000
-    channel: str | None = None
+    interface: str | None = None
+    channel: str | int | None = None
     silent: Literal["hold", "quick_stop", "fail"] = "fail"
     silent_after: Positive = 0.1
 
@@ -38,17 +41,30 @@ class BusSpec(Spec):
             raise ValueError(f"no bit rate of CiA; there are {', '.join(map(str, BIT_RATES))}")
         return value
 
+    @property
+    def carried(self) -> bool:
+        """Whether the wire is joined to a bus outside of this process."""
+        return self.interface not in (None, WIRE)
+
+    @property
+    def guests(self) -> str | None:
+        """The channel on which python-can buses of this process may join the wire."""
+        if self.carried or (self.interface is None and self.channel is None):
+            return None
+        return "bench" if self.channel is None else str(self.channel)
+
 
 class NodeSpec(Spec):
     """One drive; what is not given stays as the drive has it.
 
-    id: 1 to 126 (by default left 1, right 2); table: of the drive's type; loop: of the speed; mode: csv
-    (targets act at once) or pv (the drive ramps); counts_per_turn: of the encoder, at the wheel;
-    current_limit: A; slew: rad/s² at the wheel, 0 for none; gains: by the names of the table's settings,
-    such as kp, ki, slope.
+    kind: simulated (here), ecu (its firmware is a process on the bus, motor and shaft are here) or real
+    (drive and motor are elsewhere, the simulated wheel follows the reported speed); id: 1 to 126 (by default
+    left 1, right 2); table: of the drive's type; loop: of the speed; mode: csv (targets act at once) or pv
+    (the drive ramps); counts_per_turn: of the encoder, at the wheel; current_limit: A; slew: rad/s² at the
+    wheel, 0 for none; gains: by the names of the table's settings, such as kp, ki, slope.
     """
 
-    kind: Literal["simulated"] = "simulated"
+    kind: Kind = "simulated"
     id: Annotated[int, Field(ge=1, le=126)] | None = None
     table: str = "hilbed402"
     loop: Literal["variable_structure", "pi", "relay"] = "variable_structure"
@@ -57,13 +73,6 @@ class NodeSpec(Spec):
     current_limit: Positive | None = None
     slew: NonNegative | None = None
     gains: dict[str, Finite] = Field(default_factory=dict)
-
-    @field_validator("kind", mode="before")
-    @classmethod
-    def _not_yet(cls, value: Any) -> Any:
-        if value in _LATER:
-            raise ValueError(f"{value!r} comes with the real bus; until then every node is 'simulated'")
-        return value
 
     @field_validator("table")
     @classmethod
@@ -100,6 +109,13 @@ class NodeSpec(Spec):
         return {key: value for key, value in given.items() if value is not None}
 
 
+class TerminalSpec(Spec):
+    """A python-can channel of its own for the pins of drives whose firmware is elsewhere; real time only."""
+
+    interface: str
+    channel: str | int
+
+
 def resolve(specs: Mapping[str, NodeSpec], drives: Iterable[str]) -> tuple[Node, ...]:
     """Returns the nodes of a robot's drives in their order; ScenarioError with everything that is wrong.
 
@@ -115,7 +131,7 @@ def resolve(specs: Mapping[str, NodeSpec], drives: Iterable[str]) -> tuple[Node,
         twin = next((node for node in nodes if node.id == number), None)
         if twin is not None:
             problems.append(f"nodes: {twin.name} and {name} have the same node number {number}")
-        nodes.append(Node(name, number, load_table(spec.table), spec.mode, spec.settings()))
+        nodes.append(Node(name, number, load_table(spec.table), spec.mode, spec.settings(), kind=spec.kind))
     if problems:
         raise ScenarioError("\n".join(problems))
     return tuple(nodes)

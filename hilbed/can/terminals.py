@@ -48,7 +48,6 @@ class Terminal:
         """Shows the pins of a tick: counts (I32), mA (I16), quarters of a volt (U8)."""
         if self.gone:
             return
-        self.late += not self.answered
         self._counter = self._counter + 1 & 0xFF
         self._send(terminal.pins(self.node.id, counts, current, supply, self._counter))
 
@@ -64,6 +63,10 @@ class Terminal:
         self.repeated += newer == 0
         if 0 < newer < 0x80:
             self.answer = answer
+
+    def note_late(self) -> None:
+        """Counts a tick that begins without the answer to the one before; what was last heard holds."""
+        self.late += self._counter - self.answer.counter & 0xFF > 1
 
     def lose(self) -> None:
         """Gives the firmware up: its chopper is open from now on."""
@@ -108,13 +111,16 @@ class Terminals:
             self._until(t, lambda: all(one.powered for one in missing), min(left, REPEAT))
 
     def collect(self, t: Nanos) -> None:
-        """Waits in lockstep until all pins of the tick at `t` are answered.
+        """Waits in lockstep until all pins of the tick at `t` are answered; in real time takes what is there.
 
-        BusError where firmware falls silent, or two answer under one number.
+        BusError where firmware falls silent in lockstep, or two processes answer under one number.
         """
-        if not self._lockstep:
-            return
         ones = self.by_node.values()
+        if not self._lockstep:
+            self._pull(t, 0.0)
+            for one in ones:
+                one.note_late()
+            return
         if not self._until(t, lambda: all(one.answered for one in ones), PATIENCE):
             silent = [one for one in ones if not one.answered]
             for one in silent:

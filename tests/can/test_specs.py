@@ -58,8 +58,7 @@ def test_everything_wrong_is_told_at_once() -> None:
 @pytest.mark.parametrize(
     ("block", "message"),
     [
-        ({"kind": "ecu"}, "comes with the real bus"),
-        ({"kind": "real"}, "comes with the real bus"),
+        ({"kind": "virtual"}, "'simulated', 'ecu' or 'real'"),
         ({"kind": "simulated", "id": 0}, "greater than or equal to 1"),
         ({"id": 127}, "less than or equal to 126"),
         ({"table": "epos4"}, "no drive table 'epos4'; there are: hilbed402"),

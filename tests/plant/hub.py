@@ -8,9 +8,13 @@ import threading
 import tty
 from typing import Self
 
+QUICK = {"CAN_CONFIG": '{"sleep_after_open": 0}'}
+"""Environment of processes on a hub: python-can lets a serial adapter start for two seconds otherwise."""
+_END = 255
+
 
 class Hub:
-    """Pseudo-terminals whose `paths` python-can's slcan driver opens as if each were an adapter on one bus."""
+    """Pseudo-terminals; python-can opens each of `paths` as if it were a serial adapter on one bus."""
 
     def __init__(self, ports: int) -> None:
         pairs = [os.openpty() for _ in range(ports)]
@@ -19,27 +23,36 @@ class Hub:
         for slave in self._slaves:  # kept open: no hang-up between two programs
             tty.setraw(slave)
         self.paths = [os.ttyname(slave) for slave in self._slaves]
-        self._lines = {master: b"" for master in self._masters}
-        self._wake, self._alarm = os.pipe()
+        self._lines = dict.fromkeys(self._masters, b"")
+        self._orders, self._order = os.pipe()
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def __enter__(self) -> Self:
         self._thread.start()
         return self
 
+    def unplug(self, port: int) -> None:
+        """Takes an adapter away from whoever has it open."""
+        os.write(self._order, bytes((port,)))
+
     def __exit__(self, *_: object) -> None:
-        os.write(self._alarm, b"!")
+        os.write(self._order, bytes((_END,)))
         self._thread.join()
-        for number in (*self._masters, *self._slaves, self._wake, self._alarm):
+        for number in (*self._masters, *self._slaves, self._orders, self._order):
             os.close(number)
 
     def _run(self) -> None:
         while True:
-            ready, _, _ = select.select([self._wake, *self._masters], [], [])
-            if self._wake in ready:
-                return
-            for master in ready:
-                self._take(master)
+            ready, _, _ = select.select([self._orders, *self._masters], [], [])
+            for master in self._masters:
+                if master in ready:
+                    self._take(master)
+            if self._orders in ready:
+                (port,) = os.read(self._orders, 1)
+                if port == _END:
+                    return
+                os.close(self._slaves.pop(port))
+                os.close(self._masters.pop(port))
 
     def _take(self, master: int) -> None:
         *lines, self._lines[master] = (self._lines[master] + os.read(master, 65536)).split(b"\r")

@@ -23,12 +23,12 @@ class Answer(Protocol):
 
 
 class Terminal(Protocol):
-    """The other end of a firmware's pins.
+    """The other end of a firmware's pins."""
 
-    answer: the last one; in lockstep to the pins of this tick.
-    """
-
-    answer: Answer
+    @property
+    def answer(self) -> Answer:
+        """The last one; in lockstep to the pins of this tick."""
+        ...
 
     def present(self, counts: int, current: int, supply: int) -> None: ...
 

@@ -1,0 +1,62 @@
+"""The axes of a plant: for each drive what the scenario's `kind` says, chosen from a dict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hilbed.can.node import Node
+from hilbed.can.reported import Reported
+from hilbed.can.terminals import Terminals
+from hilbed.can.wire import Wire
+from hilbed.plant.axes import Axis, EcuAxis, MirroredAxis, RealAxis, SimulatedAxis
+from hilbed.plant.drivetrain import DriveTrain
+from hilbed.plant.encoder import Encoder
+from hilbed.plant.specs import SimulatedSpec
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """What axes are made from; inertia: kg m² that each wheel has to move; terminals: of ecu nodes."""
+
+    spec: SimulatedSpec
+    inertia: float
+    wire: Wire
+    terminals: Terminals | None
+
+    def axis(self, node: Node) -> Axis:
+        """Returns the axis of a drive, seen from its wheel."""
+        axis = _KINDS[node.kind](self, node)
+        mounted_mirrored = node.table.units.sign(node.axis) < 0 and node.kind != "real"
+        return MirroredAxis(axis) if mounted_mirrored else axis
+
+    def axes(self, nodes: Sequence[Node]) -> list[Axis]:
+        return [self.axis(node) for node in nodes]
+
+
+def _train(shop: Workshop) -> DriveTrain:
+    spec = shop.spec
+    return DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick, shop.inertia)
+
+
+def _encoder(shop: Workshop) -> Encoder:
+    return Encoder(shop.spec.encoder, shop.spec.tick)
+
+
+def _simulated(shop: Workshop, node: Node) -> Axis:
+    return SimulatedAxis(node.name, node.id, _train(shop), _encoder(shop), shop.wire.attach)
+
+
+def _ecu(shop: Workshop, node: Node) -> Axis:
+    assert shop.terminals is not None
+    return EcuAxis(node.name, _train(shop), _encoder(shop), shop.terminals.by_node[node.id])
+
+
+def _real(shop: Workshop, node: Node) -> Axis:
+    """The wheel is turned with what a motor of the scenario's kind can do at most."""
+    motor, gear = shop.spec.motor, shop.spec.gear
+    torque = motor.max_current * motor.torque_constant * gear.ratio * gear.efficiency
+    return RealAxis(node.name, Reported(node, shop.wire.attach), torque)
+
+
+_KINDS = {"simulated": _simulated, "ecu": _ecu, "real": _real}

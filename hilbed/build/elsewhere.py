@@ -1,0 +1,80 @@
+"""Drives that are not, or not all, in this process: what they need of a run, and how they are reached."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from time import monotonic
+
+from hilbed.build.carriage import Carriage
+from hilbed.can.node import Node
+from hilbed.can.specs import TerminalSpec
+from hilbed.can.terminals import Terminals
+from hilbed.types import Nanos, ScenarioError
+
+
+def check(nodes: Sequence[Node], carriage: Carriage, terminal: TerminalSpec | None) -> None:
+    """Raises ScenarioError, with all reasons, where drives elsewhere cannot be part of this run."""
+    away = [node for node in nodes if node.kind != "simulated"]
+    real = [node for node in nodes if node.kind == "real"]
+    problems = []
+    if away and carriage.gateway is None:
+        problems.append(
+            f"nodes: {_names(away)} elsewhere, but the wire is joined to no bus: say which with "
+            "-i and -c, or with bus: {interface, channel}"
+        )
+    if real and carriage.pacer is None:
+        problems.append(
+            f"nodes: {_names(real)} real, and a real drive does not wait for simulated time: add --realtime"
+        )
+    if terminal is not None and carriage.pacer is None:
+        problems.append(
+            "terminal: two channels keep no order between them, so that a run in lockstep would not be "
+            "reproducible: leave it out (pins go over the bus itself), or add --realtime"
+        )
+    if problems:
+        raise ScenarioError("\n".join(problems))
+
+
+def check_armed(nodes: Sequence[Node], armed: bool) -> None:
+    """Raises ScenarioError where real motors would turn and nobody has said that they may."""
+    real = [node for node in nodes if node.kind == "real"]
+    if real and not armed:
+        raise ScenarioError(
+            f"nodes: {_names(real)} real: this run moves a real motor; when its way is free, add --arm"
+        )
+
+
+def terminals_of(
+    nodes: Sequence[Node], carriage: Carriage, spec: TerminalSpec | None, closing: ExitStack
+) -> Terminals | None:
+    """Opens the way to the firmware of all ecu nodes; None where there are none."""
+    ecus = [node for node in nodes if node.kind == "ecu"]
+    gateway = carriage.gateway
+    if not ecus or gateway is None:
+        return None
+    if spec is not None:
+        return _own_channel(ecus, spec, closing)
+    terminals = Terminals(ecus, gateway.adapter.send, gateway.pull, monotonic, carriage.pacer is None)
+    gateway.intercept(terminals.take)
+    return terminals
+
+
+def _own_channel(ecus: Sequence[Node], spec: TerminalSpec, closing: ExitStack) -> Terminals:
+    """Pins on a bus of their own, which nothing else is heard from."""
+    from hilbed.can.hardware import Adapter
+
+    adapter = Adapter(spec.interface, spec.channel)
+    closing.callback(adapter.close)
+
+    def pull(_: Nanos, timeout: float) -> None:
+        for frame in adapter.wait(timeout) if timeout else adapter.poll():
+            terminals.take(frame)
+
+    terminals = Terminals(ecus, adapter.send, pull, monotonic, lockstep=False)
+    return terminals
+
+
+def _names(nodes: Sequence[Node]) -> str:
+    names = " and ".join(node.name for node in nodes)
+    return f"{names} {'is' if len(nodes) == 1 else 'are'}"
