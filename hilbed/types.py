@@ -66,14 +66,24 @@ class Received(NamedTuple):
     frame: Frame
 
 
+NO_ERROR, BIT_ERROR, ACK_ERROR = range(3)
+"""What ended an attempt to send: nothing; a bit that came out inverted, or the frame of another node with
+the same identifier; nobody who acknowledged."""
+
+
 class Transfer(NamedTuple):
-    """A frame's whole way over the wire: queued, first bit on the bus, last bit received; who sent it."""
+    """A frame's whole way over the wire: queued, first bit on the bus, last bit received; who sent it.
+
+    error: not NO_ERROR where the frame was cut off by an error frame, whose last bit `end` then is; nobody
+    has received it, and its node will try again. Nodes that sent the same at once are "one+other".
+    """
 
     queued: Nanos
     start: Nanos
     end: Nanos
     frame: Frame
     node: str
+    error: int = NO_ERROR
 
 
 class DriveSignals(NamedTuple):

@@ -10,13 +10,14 @@ from hilbed.types import Nanos
 class Statistics(NamedTuple):
     """Totals of a wire: frames received, time the bus was taken (interframe spaces included), worst wait.
 
-    worst_latency: the longest time from queueing to the first bit on the bus.
+    worst_latency: the longest time from queueing to the first bit on the bus; errors: error frames.
     """
 
     t: Nanos
     frames: int
     busy: Nanos
     worst_latency: Nanos
+    errors: int = 0
 
 
 def load(before: Statistics, after: Statistics) -> float:

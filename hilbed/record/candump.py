@@ -7,7 +7,13 @@ from pathlib import Path
 from hilbed.clock import SECOND
 from hilbed.record.disk import GrowingFile
 from hilbed.record.row import Batch
-from hilbed.types import Nanos, Transfer
+from hilbed.types import ACK_ERROR, BIT_ERROR, Nanos, Transfer
+
+ERROR_FRAMES = {
+    BIT_ERROR: ("20000088", "0000010000000000"),  # bus error, protocol violation: single bit
+    ACK_ERROR: ("200000A0", "0000000000000000"),  # bus error, no acknowledgement
+}
+"""Identifier with the bits that tell the class of error, and data, of Linux's error frames."""
 
 
 class CandumpLog:
@@ -35,9 +41,14 @@ class CandumpLog:
 
 
 def line(transfer: Transfer, offset: Nanos, channel: str) -> str:
-    """Returns one line of the log; a frame that ended before −`offset` is stamped 0."""
+    """Returns one line of the log; a frame that ended before −`offset` is stamped 0.
+
+    An error frame looks as Linux reports one, without the frame that it has cut off.
+    """
     seconds, rest = divmod(max(transfer.end + offset, 0), SECOND)
     identifier, data, extended, remote = transfer.frame
     name = f"{identifier:08X}" if extended else f"{identifier:03X}"
     content = "R" if remote else data.hex().upper()
+    if transfer.error:
+        name, content = ERROR_FRAMES[transfer.error]
     return f"({seconds}.{rest // 1000:06d}) {channel} {name}#{content}\n"

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hilbed.clock import MILLISECOND
+from hilbed.record.rounds import first_rounds
 from hilbed.record.row import WIDTH, Batch, Row, Witnessed
 from hilbed.types import Array, Innovation, Nanos, Reading, Transfer
 
@@ -43,7 +44,7 @@ class Columns:
         self._readings = {kind: _empty(size) for kind, size in (kinds or {}).items()}
         self._waiting: list[Witnessed] = []
         self._innovations = array("d")
-        self._bus = array("d")
+        self._bus = array("q")
 
     def take(self, batch: Batch) -> None:
         if batch.transfers:
@@ -70,8 +71,8 @@ class Columns:
 
     def _note_transfers(self, transfers: Iterable[Transfer]) -> None:
         extend = self._bus.extend
-        for queued, start, end, frame, _ in transfers:
-            extend((end * _NS, (end - queued) * _NS, (end - start) * _NS, frame.id))
+        for queued, start, end, frame, _, error in transfers:
+            extend((queued, start, end, frame.id, error))
 
     def finish(
         self, ticks: Mapping[str, Array] | None = None, tick: Nanos = MILLISECOND
@@ -91,8 +92,7 @@ class Columns:
             signals["nis/dof"] = signals["nis/dof"].astype(np.int64)
             signals["nis/accepted"] = signals["nis/accepted"].astype(np.bool_)
         if self._bus:
-            signals |= _table("bus", ("t", "latency", "duration", "id"), self._bus)
-            signals["bus/id"] = signals["bus/id"].astype(np.int64)
+            signals |= _frames(np.array(self._bus, dtype=np.int64).reshape(-1, 5))
         return signals
 
     def _measured(self, count: int) -> dict[str, Array]:
@@ -156,6 +156,19 @@ def _plant(t: Array, ticks: Mapping[str, Array], tick: float) -> dict[str, np.nd
             known = np.clip(index, 0, len(column) - 1)
             signals[name.removeprefix("tick/")] = np.where(index < len(column), column[known], nan)
     return signals
+
+
+def _frames(rows: np.ndarray) -> dict[str, np.ndarray]:
+    """Returns the columns of the bus from rows (n, 5) of queued, start, end (ns), identifier, error."""
+    queued, start, end, identifier, error = rows.T
+    return {
+        "bus/t": end * _NS,
+        "bus/latency": (end - queued) * _NS,
+        "bus/duration": (end - start) * _NS,
+        "bus/arbitration": (start - first_rounds(queued, start)) * _NS,
+        "bus/id": identifier.copy(),
+        "bus/error": error.copy(),
+    }
 
 
 def _columns_of(kind: str, readings: Readings) -> dict[str, np.ndarray]:

@@ -30,8 +30,8 @@ class BusDigest:
         if not batch.transfers:
             return
         pieces: list[bytes] = []
-        for queued, start, end, (identifier, data, extended, remote), node in batch.transfers:
-            name = node.encode()
+        for queued, start, end, (identifier, data, extended, remote), node, error in batch.transfers:
+            name = node.encode() + bytes((0, error)) if error else node.encode()
             head = _FRAME(queued, start, end, identifier, extended, remote, len(data), len(name))
             pieces += (head, data, name)
         self._sha.update(b"".join(pieces))

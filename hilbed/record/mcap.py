@@ -14,6 +14,7 @@ from hilbed.record import messages
 from hilbed.record.channels import Channels
 from hilbed.record.cyclelog import CycleLog
 from hilbed.record.disk import GrowingFile
+from hilbed.record.rounds import Rounds
 from hilbed.record.row import Batch, Row, Witnessed
 from hilbed.scene import BeaconSpec
 from hilbed.types import Array, Innovation, Nanos, Snapshot
@@ -59,6 +60,7 @@ class McapLog:
         self._file = GrowingFile(path, TAIL)
         self._channels = Channels(self._file)
         self._cycles = CycleLog(self._channels, offset)
+        self._rounds = Rounds()
         self._tick_names: list[str] = []
         self._open(setting or Setting())
 
@@ -111,8 +113,9 @@ class McapLog:
 
     def _note_transfers(self, batch: Batch) -> None:
         log, offset, message = self._log_frame, self._offset, messages.frame_message
-        for transfer in batch.transfers:
-            log(message(transfer), max(transfer.end + offset, 0))
+        lost = self._rounds.lost(batch.transfers)
+        for transfer, waited in zip(batch.transfers, lost, strict=True):
+            log(message(transfer, waited), max(transfer.end + offset, 0))
 
     def _note_reading(self, witnessed: Witnessed) -> None:
         (kind, t, delivered, value, _, _), beacon, true = witnessed

@@ -56,7 +56,10 @@ FRAME = Definition(
     "hilbed_msgs/msg/CanFrame",
     "float64 latency  # s, from queueing to the last bit\n"
     "float64 wait  # s, from queueing to the first bit\n"
-    "uint32 id\nbool extended\nbool remote\nuint8 length\nuint8[8] data\nstring node\n",
+    "float64 arbitration  # s, of the wait: other frames won the bus\n"
+    "uint32 id\nbool extended\nbool remote\nuint8 length\n"
+    "uint8 error  # 0, or what cut it off: 1 a wrong bit, 2 no acknowledgement\n"
+    "uint8[8] data\nstring node\n",
 )
 
 _HEAD = [("cdr", "<u4"), ("sec", "<i4"), ("nanosec", "<u4"), ("length", "<u4"), ("frame", "S4")]
@@ -65,7 +68,7 @@ _POSES = np.dtype([*_HEAD, *_PLACE])
 _TRANSFORMS = np.dtype(
     [_HEAD[0], ("count", "<u4"), *_HEAD[1:], ("child_length", "<u4"), ("child", "S16"), *_PLACE]
 )
-_pack_frame = Struct("<4s dd I??B 8sx I").pack
+_pack_frame = Struct("<4s ddd I??BB 8s I").pack
 
 
 def pose_messages(stamps: np.ndarray, poses: Array) -> np.ndarray:
@@ -93,12 +96,12 @@ def _placed(table: np.ndarray, stamps: np.ndarray, poses: Array) -> np.ndarray:
     return table
 
 
-def frame_message(transfer: Transfer) -> bytes:
-    """Returns a CanFrame with its way over the bus."""
-    queued, start, end, (identifier, data, extended, remote), node = transfer
+def frame_message(transfer: Transfer, lost: float) -> bytes:
+    """Returns a CanFrame with its way over the bus; lost: s in arbitration."""
+    queued, start, end, (identifier, data, extended, remote), node, error = transfer
     name = node.encode() + b"\0"
-    latency, wait = (end - queued) * 1e-9, (start - queued) * 1e-9
-    head = _pack_frame(_CDR, latency, wait, identifier, extended, remote, len(data), data, len(name))
+    times = (end - queued) * 1e-9, (start - queued) * 1e-9, lost
+    head = _pack_frame(_CDR, *times, identifier, extended, remote, len(data), error, data, len(name))
     return head + name
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hilbed.record.candump import CandumpLog, line
 from hilbed.record.disk import RecordError
-from hilbed.types import Frame, Transfer
+from hilbed.types import ACK_ERROR, BIT_ERROR, Frame, Transfer
 from tests.record.runs import play
 
 BOOT = 2_000_000_000
@@ -50,6 +50,22 @@ def test_the_file_holds_every_frame_in_the_form_of_candump(tmp_path: Path) -> No
     assert all(re.fullmatch(r"\(\d+\.\d{6}\) hilbed [0-9A-F]{3}#([0-9A-F]{2}){0,8}", one) for one in lines)
     assert lines[0] == "(1.000234) hilbed 700#01AB"
     assert lines[3] == "(2.000234) hilbed 080#"
+
+
+@pytest.mark.parametrize(("error", "bits"), [(BIT_ERROR, 0x88), (ACK_ERROR, 0xA0)])
+def test_error_frames_are_those_of_linux(error: int, bits: int) -> None:
+    """CAN_ERR_FLAG and classes as in linux/can/error.h: protocol 0x8, acknowledge 0x20, bus error 0x80."""
+    from io import StringIO
+
+    from can.io import CanutilsLogReader
+
+    text = line(Transfer(0, 0, 5_000, Frame(0x181, b"x"), "x", error), 0, "hilbed")
+    name, _, data = text.split()[2].partition("#")
+    assert int(name, 16) == 0x2000_0000 | bits
+    assert len(bytes.fromhex(data)) == 8
+    (message,) = CanutilsLogReader(StringIO(text))
+    assert message.is_error_frame
+    assert message.timestamp == pytest.approx(5e-6)
 
 
 def test_a_killed_run_leaves_all_but_the_last_second(tmp_path: Path) -> None:

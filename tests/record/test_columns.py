@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from hilbed.poses import moved
 from hilbed.record.columns import Columns
-from hilbed.record.row import DeadReckoning
-from hilbed.types import Innovation, Odometry, Pose, Reading
+from hilbed.record.rounds import Rounds
+from hilbed.record.row import Batch, DeadReckoning
+from hilbed.types import Frame, Innovation, Odometry, Pose, Reading, Transfer
 from tests.record.runs import FIELDS, PERIOD, cycle, play, ticks
 
 
@@ -105,6 +106,20 @@ def test_readings_are_in_order_of_delivery_and_only_delivered_ones_make_rows() -
     assert signals["position/measured"] == pytest.approx(np.array([[1.0, 2.0]]))
     assert signals["position/true"].shape == (1, 2)
     assert signals["nis/dof"].tolist() == [2] * 5
+
+
+def test_what_a_frame_waits_is_the_bus_being_taken_and_then_arbitration() -> None:
+    """Three frames queued while one is on the bus: the second of them loses once, the third twice."""
+    ways = [(0, 0, 100), (40, 110, 200), (50, 210, 300), (60, 310, 400), (310, 410, 500)]
+    transfers = [Transfer(*way, Frame(1), "left", error=k == 1) for k, way in enumerate(ways)]
+    columns = Columns()
+    columns.take(Batch((), transfers, (), (), ()))
+    signals = columns.finish()
+    assert signals["bus/arbitration"] * 1e9 == pytest.approx([0, 0, 100, 200, 100])
+    assert signals["bus/error"].tolist() == [0, 1, 0, 0, 0]
+    rounds = Rounds()
+    split = [*rounds.lost(transfers[:2]), *rounds.lost([]), *rounds.lost(transfers[2:])]
+    assert split == pytest.approx(signals["bus/arbitration"])
 
 
 def test_bus_rows_hold_latency_and_duration() -> None:

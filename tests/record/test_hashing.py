@@ -64,6 +64,8 @@ def test_every_part_of_a_frame_counts() -> None:
         same._replace(start=11),
         same._replace(end=21),
         same._replace(node="right"),
+        same._replace(error=1),
+        same._replace(error=2),
         *(
             same._replace(frame=other)
             for other in (

@@ -102,10 +102,10 @@ def test_poses_and_frames_have_the_layout_of_ros(tmp_path: Path) -> None:
     assert struct.unpack("<7d", topics["/tf"][20][1][44:])[0] == pytest.approx(0.2)
     stamp, data = topics["/can"][0]
     assert stamp == 1_000_234_000
-    assert struct.unpack("<dd I??B8sx I", data[4:40]) == pytest.approx(
-        (234e-6, 10e-6, 0x700, False, False, 2, b"\x01\xab\0\0\0\0\0\0", 5)
+    assert struct.unpack("<ddd I??BB8s I", data[4:48]) == pytest.approx(
+        (234e-6, 10e-6, 0.0, 0x700, False, False, 2, 0, b"\x01\xab\0\0\0\0\0\0", 5)
     )
-    assert data[40:] == b"left\0"
+    assert data[48:] == b"left\0"
 
 
 def test_images_are_kept_to_the_bit(tmp_path: Path) -> None:
