@@ -14,6 +14,8 @@ from hilbed.can.driver import reason
 MOST_WAITING = 256
 PATIENCE = 0.1
 """s; a command that has waited longer is too old to be sent."""
+BROKEN_LINE = (ValueError, LookupError)
+"""What drivers of serial adapters raise at a line that they cannot make out."""
 _TURN = 0.1  # s, after which a thread looks whether it should end
 
 
@@ -79,19 +81,21 @@ class Receiver:
     def __init__(self, bus: can.BusABC) -> None:
         self.trouble = ""
         self._bus = bus
-        self._arrived: SimpleQueue[can.Message] = SimpleQueue()
+        self._arrived: SimpleQueue[can.Message | Exception | None] = SimpleQueue()
         self._open = True
         self._thread = Thread(target=self._run, name="hilbed CAN receiver", daemon=True)
         self._thread.start()
 
     def take(self, timeout: float) -> can.Message | None:
-        """Returns the next message, None after `timeout` s without one; CanOperationError at the end."""
-        try:
-            return self._arrived.get(timeout=timeout) if timeout > 0.0 else self._arrived.get_nowait()
-        except Empty:
-            if self.trouble:
-                raise can.CanOperationError(self.trouble) from None
-            return None
+        """Returns the next message, None after `timeout` s without one; raises what the driver has raised."""
+        message: can.Message | Exception | None = None
+        with suppress(Empty):
+            message = self._arrived.get(timeout=timeout) if timeout > 0.0 else self._arrived.get_nowait()
+        if message is None and self.trouble:
+            raise can.CanOperationError(self.trouble)
+        if isinstance(message, Exception):
+            raise message
+        return message
 
     def close(self) -> None:
         self._open = False
@@ -101,10 +105,12 @@ class Receiver:
         while self._open:
             try:
                 message = self._bus.recv(_TURN)
-            except ValueError:  # a broken line of a serial adapter
+            except BROKEN_LINE as error:
+                self._arrived.put(error)
                 continue
             except Exception as error:
                 self.trouble = reason(error)
+                self._arrived.put(None)  # whoever waits is to hear of it
                 return
             if message is not None:
                 self._arrived.put(message)

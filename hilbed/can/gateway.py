@@ -13,6 +13,7 @@ from hilbed.can.cob import CONTROLLER_ID, HEARTBEAT, SYNC
 from hilbed.can.counts import Counts
 from hilbed.can.node import Node
 from hilbed.can.wire import Wire
+from hilbed.clock import seconds
 from hilbed.ports import Bus
 from hilbed.types import BusError, Frame, Nanos
 
@@ -84,12 +85,11 @@ class Gateway:
 
         Raises BusError where the bus is lost, or somebody there sends what a node of this process sends.
         """
+        frames: list[Frame] = []
         try:
             frames = self.adapter.wait(timeout) if timeout else self.adapter.poll()
-        except BusError:
-            if not self._stopping:
-                raise
-            return
+        except BusError as error:
+            self._lost(t, error)
         for frame in frames:
             if not any(take(frame) for take in self._taken):
                 self._take_in(t, frame)
@@ -111,21 +111,25 @@ class Gateway:
             port = self._stranger
             if identifier in self._here and not self._stopping:
                 raise BusError(
-                    f"{self._here[identifier]} is simulated here, but another node on {self.adapter.name} "
-                    f"sends {identifier:03X} as well: two nodes with one number"
+                    f"t = {seconds(t):.3f} s: {self._here[identifier]} is simulated here, but another node "
+                    f"on {self.adapter.name} sends {identifier:03X} as well: two nodes with one number"
                 )
         if port is not None:
             port.send(t, frame)
 
-    def _carry(self, _: Nanos, frame: Frame) -> None:
+    def _carry(self, t: Nanos, frame: Frame) -> None:
         """Sends what has completed on the wire, unless it has come from the other bus."""
         if not frame.extended and frame.id in self._elsewhere:
             return
         try:
             self.adapter.send(frame)
-        except BusError:
-            if not self._stopping:
-                raise
+        except BusError as error:
+            self._lost(t, error)
+
+    def _lost(self, t: Nanos, error: BusError) -> None:
+        """Ends the run where it has not ended yet."""
+        if not self._stopping:
+            raise BusError(f"t = {seconds(t):.3f} s: {error}") from None
 
 
 def _sends(node: Node) -> Iterable[int]:

@@ -10,7 +10,7 @@ import can
 
 from hilbed.can.counts import Counts
 from hilbed.can.driver import frame_of, message, open_driver, reason
-from hilbed.can.driver_threads import Receiver, Sender
+from hilbed.can.driver_threads import BROKEN_LINE, Receiver, Sender
 from hilbed.types import BusError, Frame
 
 MOST = 256
@@ -89,7 +89,7 @@ class Adapter:
         """Adds the next message, if it is a frame; returns whether there was one."""
         try:
             received = self._next(timeout)
-        except ValueError:  # a broken line of a serial adapter
+        except BROKEN_LINE:
             self.counts.malformed += 1
             return True
         except Exception as error:  # a driver may raise anything
