@@ -75,6 +75,8 @@ class Axis:
         self.clipped = not low < duty < high
         if self.stop is not None and ref == 0.0:
             self._rest(self.stop, speed)
+            if not self.bridge_enabled:
+                return 0
         return round(duty * FULL_DUTY)
 
     def refresh(self) -> None:

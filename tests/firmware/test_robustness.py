@@ -13,73 +13,46 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import firmware_sim
-from firmware_sim import Drive, Frame
+from firmware_sim import Drive, Frame, axis, entry
+from firmware_sim.abort import Abort
+from firmware_sim.cia402 import TRANSITIONS, Command, State
+from firmware_sim.motor_model import MotorModel
+from firmware_sim.sdo import SdoServer
+from tests.firmware.fuzz import fuzz
+from tests.firmware.invariants import EDGES
+from tests.firmware.noise import Noise
 from tests.firmware.wire import MILLISECOND, NODE, enabled
-
-SERVICES = [0x000, 0x080, 0x200 + NODE, 0x300 + NODE, 0x600 + NODE, 0x700 + NODE, 0x77F, 0x180 + NODE]
-INDICES = [0x1003, 0x1005, 0x1014, 0x1016, 0x1017, 0x1400, 0x1600, 0x1800, 0x1A00, 0x1A02]
-INDICES += [
-    0x2000,
-    0x2001,
-    0x2002,
-    0x2010,
-    0x2011,
-    0x2012,
-    0x2013,
-    0x605A,
-    0x605E,
-    0x6040,
-    0x6060,
-    0x607F,
-    0x60FF,
-]
-
-
-def anything(source: random.Random) -> Frame:
-    """Returns a frame that is sometimes nonsense and sometimes nearly right."""
-    kind = source.random()
-    if kind < 0.3:
-        return Frame(
-            source.randrange(1 << 29),
-            source.randbytes(source.randrange(65)),
-            source.random() < 0.5,
-            source.random() < 0.2,
-        )
-    if kind < 0.6:
-        return Frame(source.choice(SERVICES), source.randbytes(source.choice((0, 1, 2, 6, 8))))
-    if kind < 0.7:
-        return Frame(0x000, bytes((source.choice((1, 1, 1, 2, 128, 129, 130)), NODE)))
-    if kind < 0.8:
-        word = source.choice((0x06, 0x07, 0x0F, 0x0F, 0x02, 0x00, 0x80, 0x10F))
-        return Frame(0x200 + NODE, word.to_bytes(2, "little") + source.randbytes(4))
-    if kind < 0.9:
-        return Frame(0x080)
-    head = source.choice((0x23, 0x27, 0x2B, 0x2F, 0x40, 0x21, 0x20, 0x60, 0x70, 0x00, 0x01))
-    index, sub = source.choice(INDICES), source.randrange(13)
-    return Frame(
-        0x600 + NODE, bytes((head,)) + index.to_bytes(2, "little") + bytes((sub,)) + source.randbytes(4)
-    )
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_hundred_thousand_frames(seed: int) -> None:
-    source = random.Random(seed)
-    drive, t, enabled_ticks = Drive(NODE), 0, 0
-    for _ in range(25_000):
-        drive.on_frame(t, anything(source))
-        if source.random() < 0.3:
-            duty = drive.tick(
-                t, source.randrange(-(2**31), 2**31), source.randrange(-9000, 9000), source.randrange(30, 256)
-            )
-            assert -32767 <= duty <= 32767
-            assert drive.bridge_enabled or duty == 0
-            most = drive._axis.settings.max_speed
-            assert -most <= drive.speed_ref <= most
-            enabled_ticks += drive.bridge_enabled
-            t += MILLISECOND
-        assert all(0 <= f.id <= 0x7FF and len(f.data) <= 8 and not f.extended for f in drive.outbox)
-        drive.outbox.clear()
-    assert enabled_ticks > 0  # the drive was not merely asleep
+    watched, ticks = fuzz(25_000, seed)
+    assert len(watched.edges) > 0.7 * len(EDGES)  # the drive was not merely asleep
+    assert all(ticks[state] for state in State if state is not State.NOT_READY)
+    assert set(watched.sent) == {"heartbeat", "SDO", "EMCY", "PDO"}
+
+
+def unlimited(_: MotorModel, speed: float, voltage: float) -> tuple[float, float]:  # noqa: ARG001
+    return -1.0, 1.0
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "hole"),
+    [
+        (MotorModel, "window", unlimited),
+        (axis, "TRANSITIONS", {**TRANSITIONS, (State.FAULT, Command.ENABLE): State.ENABLED}),
+        (axis, "approach", lambda value, target, rise, fall: 2 * target),  # noqa: ARG005
+        (SdoServer, "request", lambda server, t, data: server),  # noqa: ARG005
+        (entry.Entry, "check", lambda entry, value: None),  # noqa: ARG005
+    ],
+    ids=["no current limit", "out of a fault", "beyond the target", "no bytes", "no ranges"],
+)
+def test_it_finds_a_drive_with_a_hole(
+    where: object, name: str, hole: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(where, name, hole)
+    with pytest.raises((AssertionError, TypeError, ValueError, KeyError, Abort)):
+        fuzz(25_000, seed=1)
 
 
 @given(
@@ -110,11 +83,11 @@ def test_the_current_stays_in_its_limit_by_the_drives_own_model() -> None:
 
 def test_the_same_frames_and_ticks_give_the_same_bytes() -> None:
     def trace(seed: int) -> list[object]:
-        source, drive = random.Random(seed), Drive(NODE)
+        noise, drive = Noise(seed), Drive(NODE)
         seen: list[object] = []
         for k in range(3000):
-            drive.on_frame(k * MILLISECOND, anything(source))
-            seen.append(drive.tick(k * MILLISECOND, source.randrange(10**6), 0, 96))
+            drive.on_frame(k * MILLISECOND, noise.frame())
+            seen.append(drive.tick(k * MILLISECOND, *noise.pins()))
             seen += drive.outbox
             drive.outbox.clear()
         return seen
@@ -146,13 +119,13 @@ def test_the_firmware_imports_nothing_but_the_standard_library() -> None:
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32))
 def test_the_filter_that_it_asks_for_drops_nothing_that_it_would_heed(seed: int) -> None:
-    source = random.Random(seed)
+    noise = Noise(seed)
     filters: list[Collection[int]] = []
     filtered, plain = Drive(NODE, filters.append), Drive(NODE)
     for t in range(300):
         duties = [drive.tick(t * MILLISECOND, 0, 0, 96) for drive in (filtered, plain)]
         assert duties[0] == duties[1]
-        frame = anything(source)
+        frame = noise.frame()
         plain.on_frame(t * MILLISECOND, frame)
         if frame.id in filters[-1] and not frame.extended:
             filtered.on_frame(t * MILLISECOND, frame)

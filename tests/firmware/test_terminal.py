@@ -13,7 +13,7 @@ from firmware_sim.terminal import TO_FIRMWARE, Terminal, micro
 from hilbed.can import terminal as bench
 from hilbed.plant import pins
 from hilbed.types import Frame as BenchFrame
-from tests.firmware.test_robustness import anything
+from tests.firmware.noise import Noise
 
 NODE = 5
 MS = 1_000_000
@@ -34,11 +34,11 @@ def tick(terminal: Terminal, counts: int, current: int, supply: int, counter: in
 
 @given(st.integers(0, 2**32), st.integers(-(2**31), 2**31 - 1))
 def test_frames_or_calls_make_no_difference(seed: int, start: int) -> None:
-    source = random.Random(seed)
+    source, noise = random.Random(seed), Noise(seed)
     terminal, filtered = Terminal(NODE), {0: frozenset[int]()}
     drive = Drive(NODE, lambda wanted: filtered.update({0: frozenset(wanted)}))
     for k in range(60):
-        arrived = [anything(source) for _ in range(source.randrange(4))] if k else []
+        arrived = [noise.frame() for _ in range(source.randrange(4))] if k else []
         heard = [frame for frame in arrived if frame.id in filtered[0]]
         for frame in arrived:
             assert terminal.receive(frame) == []

@@ -1,0 +1,50 @@
+"""Random frames into a drive, at random pins: `scripts/firmware-fuzz [FRAMES [SEED]]` prints figures."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from time import perf_counter
+
+from firmware_sim.cia402 import State
+from tests.firmware.invariants import EDGES, Watched
+from tests.firmware.noise import Noise
+from tests.firmware.wire import MILLISECOND
+
+TICKS = 0.3  # ticks a frame
+LOOK = 1000  # frames between two looks at the whole dictionary
+
+
+def fuzz(frames: int, seed: int) -> tuple[Watched, Counter[State]]:
+    """Sends a drive so many frames; returns it and how many ticks it spent in each state.
+
+    Raises AssertionError with the first thing that does not hold; whatever else the drive raises is its own.
+    """
+    noise, watched, ticks = Noise(seed), Watched(), Counter[State]()
+    t = 0
+    for k in range(frames):
+        watched.heed(t, noise.frame())
+        if noise.random.random() < TICKS:
+            watched.tick(t, noise.pins())
+            ticks[watched.axis.state] += 1
+            t += MILLISECOND
+        if k % LOOK == 0:
+            watched.check_dictionary()
+    return watched, ticks
+
+
+def main() -> None:
+    frames, seed = (int(given) for given in (*sys.argv[1:], *("1000000", "1")[len(sys.argv) - 1 :]))
+    start = perf_counter()
+    watched, ticks = fuzz(frames, seed)
+    seconds = perf_counter() - start
+    print(f"{frames} frames, {ticks.total()} ticks, seed {seed}: every invariant held, {seconds:.0f} s")
+    print("ticks in", ", ".join(f"{state.name} {count}" for state, count in ticks.most_common()))
+    print(f"{len(watched.edges)} of {len(EDGES)} transitions, {watched.edges.total()} times")
+    print("sent:", ", ".join(f"{kind} {count}" for kind, count in sorted(watched.sent.items())))
+    print("never taken:", ", ".join(f"{a.name}-{b.name}" for a, b in EDGES - set(watched.edges)) or "none")
+    print(f"dropped for their length: {watched.drive.malformed}")
+
+
+if __name__ == "__main__":
+    main()
