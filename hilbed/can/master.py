@@ -46,18 +46,19 @@ class Master:
         for node in self._nodes:
             _await_boot_up(link, heard, node)
         for node in self._nodes:
-            twins.watch(node)
-            twins.check(node, self._bring_up(link, heard, node))
+            self._bring_up(link, heard, twins, node)
         link.pause(SETTLING)
         for node in self._nodes:
             _check_enabled(SdoClient(link, node.name, node.id), node)
         link.pause(ready - link.t)
         return link.t
 
-    def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> int:
-        """Identifies, configures, starts and enables a node; returns how many SDO requests that took."""
+    def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, twins: Twins, node: Node) -> None:
+        """Identifies, configures, starts and enables a node."""
         sdo = SdoClient(link, node.name, node.id)
-        _identify(sdo, node)
+        _identify(sdo, node)  # by then the boot-up of power-on and that of the reset have come
+        twins.watch(node)
+        before = sdo.asked
         for entry, value in configuration.steps(node, self._period):
             sdo.write(entry.index, entry.sub, entry.type, value)
         _await_mode(link, sdo, node)
@@ -66,7 +67,7 @@ class Master:
             state = nmt.STATE_NAMES.get(heard.states.get(node.id, -1), "silent")
             raise BusError(f"{node}: told to start, but its heartbeat (1017) says {state}")
         _enable(link, sdo, node)
-        return sdo.asked
+        twins.check(node, sdo.asked - before)
 
 
 def _await_boot_up(link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> None:
