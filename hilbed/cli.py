@@ -90,6 +90,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--force", action="store_true", help="replace an existing run folder")
     run.add_argument("--json", action="store_true", help="print verdict.json on stdout and nothing else")
     run.add_argument("--record", choices=("all", "signals", "none"), help="what is written (all)")
+    run.add_argument("--arm", action="store_true", help="let real drives (nodes of kind real) turn")
     run.add_argument("--realtime", action="store_true", help="pace the cycles to the wall clock")
     _add_bus(run)
 

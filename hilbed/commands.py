@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"warning: {warning}", file=sys.stderr)
     folder = RunFolder(options.out or _default_folder(loaded), options.force)
     with stop_on_signal() as stop:
-        outcome = perform(loaded, folder, _watch(loaded, stop), separate=processors() > 1)
+        outcome = perform(loaded, folder, _watch(loaded, stop), processors() > 1, options.arm)
     if outcome.trace:
         print(f"{outcome.trace}This is a mistake in hilbed, not in the scenario.", file=sys.stderr)
     report = _report(folder.path, loaded)

@@ -15,6 +15,7 @@ import numpy as np
 
 from hilbed import collector, loop, verdict
 from hilbed.build import BOOT, Bench, build
+from hilbed.build.elsewhere import check_armed
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.pacer import Pacer
@@ -91,14 +92,20 @@ class _Ending:
 
 
 def perform(
-    loaded: Loaded, folder: RunFolder | None, watch: Watch | None = None, separate: bool = False
+    loaded: Loaded,
+    folder: RunFolder | None,
+    watch: Watch | None = None,
+    separate: bool = False,
+    armed: bool = False,
 ) -> Outcome:
     """Builds the bench of a scenario, runs it and judges it; with a folder the run is written there.
 
     separate: cameras render in processes of their own; the run is the same, only quicker on two processors.
+    armed: whether real motors may turn.
 
     Raises ScenarioError for what is found before the first cycle, when nothing has been written yet.
     """
+    check_armed(loaded.scenario, armed)
     cost, notes, ending = Cost(), Notes(), _Ending()
     pacer = _pacer(loaded.scenario, cost)
     bench = build(loaded, notes, cost, separate, pacer)

@@ -118,7 +118,8 @@ def _summary(content: Mapping[str, Any], colour: bool) -> str:
     if len(events) > MOST_EVENTS:
         shown.append(f"… and {len(events) - MOST_EVENTS} more drive events in verdict.json")
     parts = [tell(content[part]) for part, tell in _PARTS.items() if part in content]
-    return "\n".join([line, *([content["reason"]] if content["reason"] else []), *parts, *shown])
+    told = [content["reason"], *parts, *shown]
+    return "\n".join([line, *filter(None, told)])
 
 
 def _realtime(part: Mapping[str, Any]) -> str:
@@ -139,4 +140,10 @@ def _adapter(part: Mapping[str, Any]) -> str:
     return f"{part['name']}: {part['sent']} frames sent, {part['received']} received{foreign}{odd}"
 
 
-_PARTS = {"realtime": _realtime, "adapter": _adapter}
+def _nodes(part: Mapping[str, str]) -> str:
+    if all(kind == "simulated" for kind in part.values()):
+        return ""
+    return "drives: " + ", ".join(f"{name} {kind}" for name, kind in part.items())
+
+
+_PARTS = {"nodes": _nodes, "realtime": _realtime, "adapter": _adapter}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from time import monotonic
 
@@ -10,22 +10,23 @@ from hilbed.build.carriage import Carriage
 from hilbed.can.node import Node
 from hilbed.can.specs import TerminalSpec
 from hilbed.can.terminals import Terminals
+from hilbed.scenario.model import Scenario
 from hilbed.types import Nanos, ScenarioError
 
 
 def check(nodes: Sequence[Node], carriage: Carriage, terminal: TerminalSpec | None) -> None:
     """Raises ScenarioError, with all reasons, where drives elsewhere cannot be part of this run."""
-    away = [node for node in nodes if node.kind != "simulated"]
-    real = [node for node in nodes if node.kind == "real"]
+    away = [node.name for node in nodes if node.kind != "simulated"]
+    real = [node.name for node in nodes if node.kind == "real"]
     problems = []
     if away and carriage.gateway is None:
         problems.append(
-            f"nodes: {_names(away)} elsewhere, but the wire is joined to no bus: say which with "
-            "-i and -c, or with bus: {interface, channel}"
+            f"nodes: {_are(away)} elsewhere, but the wire is joined to no bus: say which with -i and -c, "
+            "or with bus: {interface, channel}"
         )
     if real and carriage.pacer is None:
         problems.append(
-            f"nodes: {_names(real)} real, and a real drive does not wait for simulated time: add --realtime"
+            f"nodes: {_are(real)} real, and a real drive does not wait for simulated time: add --realtime"
         )
     if terminal is not None and carriage.pacer is None:
         problems.append(
@@ -36,12 +37,13 @@ def check(nodes: Sequence[Node], carriage: Carriage, terminal: TerminalSpec | No
         raise ScenarioError("\n".join(problems))
 
 
-def check_armed(nodes: Sequence[Node], armed: bool) -> None:
+def check_armed(scenario: Scenario, armed: bool) -> None:
     """Raises ScenarioError where real motors would turn and nobody has said that they may."""
-    real = [node for node in nodes if node.kind == "real"]
+    real = [name for name, node in scenario.nodes.items() if node.kind == "real"]
     if real and not armed:
         raise ScenarioError(
-            f"nodes: {_names(real)} real: this run moves a real motor; when its way is free, add --arm"
+            f"nodes: {_are(real)} real: this run moves a real motor, at {scenario.real_speed_limit:g} m/s at "
+            "most (real_speed_limit); when its way is free, add --arm"
         )
 
 
@@ -60,6 +62,12 @@ def terminals_of(
     return terminals
 
 
+def late(answers: Mapping[str, int], terminals: Terminals | None) -> dict[str, int]:
+    """Returns how many answers came late: to SYNC by drive, and to the pins of firmware elsewhere."""
+    pins = () if terminals is None else terminals.by_node.values()
+    return {**answers, **{f"{one.node.name} pins": one.late for one in pins}}
+
+
 def _own_channel(ecus: Sequence[Node], spec: TerminalSpec, closing: ExitStack) -> Terminals:
     """Pins on a bus of their own, which nothing else is heard from."""
     from hilbed.can.hardware import Adapter
@@ -75,6 +83,5 @@ def _own_channel(ecus: Sequence[Node], spec: TerminalSpec, closing: ExitStack) -
     return terminals
 
 
-def _names(nodes: Sequence[Node]) -> str:
-    names = " and ".join(node.name for node in nodes)
-    return f"{names} {'is' if len(nodes) == 1 else 'are'}"
+def _are(names: Sequence[str]) -> str:
+    return f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'}"

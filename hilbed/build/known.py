@@ -29,16 +29,18 @@ def surroundings(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surrou
 
 def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> tuple[Node, ...]:
     """Returns the drives on the bus in the robot's order; ScenarioError with everything that is wrong."""
-    return tuple(_told(node, spec) for node in resolve(scenario.nodes, drives))
+    nodes = resolve(scenario.nodes, drives)
+    fastest = scenario.real_speed_limit / scenario.robot.wheel_radius
+    return tuple(
+        replace(node, max_speed=fastest) if node.kind == "real" else _told(node, spec) for node in nodes
+    )
 
 
 def _told(node: Node, spec: SimulatedSpec) -> Node:
     """Returns a node that is told at boot what it drives, where the scenario does not say otherwise.
 
-    A real drive knows its motor better than the scenario does.
+    Not for a real drive, which knows its motor better than the scenario does.
     """
-    if node.kind == "real":
-        return node
     plate = {
         "counts_per_turn": spec.encoder.resolution,
         "resistance": spec.motor.resistance,

@@ -33,6 +33,7 @@ from hilbed.plant.supply import Supply
 from hilbed.plant.urdf import Body, diffdrive, moved_inertia
 from hilbed.ports import Witness
 from hilbed.robots import ROBOTS
+from hilbed.robots.limited import Limited
 from hilbed.scenario import files
 from hilbed.scenario.load import Loaded
 from hilbed.scenario.model import Scenario
@@ -90,7 +91,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     axes = Workshop(spec, moved_inertia(body, inertia), wire, terminals).axes(nodes)
     supply, collect = Supply(spec.supply), None if terminals is None else terminals.collect
     plant = SimulatedPlant(axes, world, supply, schedule, carriage.medium, sensors, tick, cost, collect)
-    base = CanBase(robot, port, nodes, scenario.bus)
+    base = CanBase(Limited(robot, [node.max_speed for node in nodes]), port, nodes, scenario.bus)
     rig = Rig(
         base,
         sensors,
@@ -108,7 +109,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     return Bench(
         rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
         hands.boot, hands.stop, plant.ticks, hands.events, closing.close, nodes,
-        carriage.due, lambda: base.late, carriage.account,
+        carriage.due, lambda: elsewhere.late(base.late, terminals),
+        lambda: {"nodes": {node.name: node.kind for node in nodes}, **carriage.account()},
     )  # fmt: skip
 
 

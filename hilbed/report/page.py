@@ -29,6 +29,8 @@ def banner(run: Run) -> str:
     verdict = run.verdict
     word, kind = ("passed", "good") if verdict["passed"] else ("failed", "bad")
     reason = f'<p class="reason">{escape(str(verdict["reason"]))}</p>' if verdict.get("reason") else ""
+    away = [f"{name} {kind}" for name, kind in verdict.get("nodes", {}).items() if kind != "simulated"]
+    drives = f'<p class="reason">drives: {escape(", ".join(away))}</p>' if away else ""
     facts = [
         ("simulated", _number(verdict["sim_time"]), "s"),
         ("wall time", _number(verdict["wall_time"]), "s"),
@@ -39,7 +41,7 @@ def banner(run: Run) -> str:
     return (
         f'<header class="{kind}"><div><h1>{escape(str(verdict["scenario"]))}'
         f"<small> seed {escape(str(verdict['seed']))}</small>"
-        f'<span class="pill">{word}</span></h1>{reason}</div><dl>{tiles}</dl></header>\n'
+        f'<span class="pill">{word}</span></h1>{reason}{drives}</div><dl>{tiles}</dl></header>\n'
     )
 
 
