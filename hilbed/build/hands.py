@@ -18,7 +18,7 @@ STANDSTILL: Nanos = SECOND
 """How long the bench goes on after the last cycle at most, so that the drives come to rest."""
 
 
-NOT_STOPPED = f"has not come to rest within {seconds(STANDSTILL):g} s of the quick stop"
+NOT_STOPPED = f"does not say that it stands, {seconds(STANDSTILL):g} s after the quick stop"
 
 
 class Plant(Protocol):
@@ -66,12 +66,13 @@ class Hands:
         self.carriage.stop()
         self.base.stop(t)
         events = self.base.ears.events
-        known = len(events)
+        known, started = len(events), self.base.started
         try:
             self._settle(t)
         finally:
             del events[known:]  # of drives that stop as they are told
-            events += [BusEvent(t, name, NOT_STOPPED) for name in self.base.moving]
+            if started:
+                events += [BusEvent(t, name, NOT_STOPPED) for name in self.base.moving]
             for flush in self.flush:
                 flush()
 

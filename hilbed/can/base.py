@@ -121,6 +121,11 @@ class CanBase:
         return tuple(axis.node.name for axis in self._axes if axis.silent)
 
     @property
+    def started(self) -> bool:
+        """Whether a cycle has begun."""
+        return self._syncs > 0
+
+    @property
     def moving(self) -> tuple[str, ...]:
         """Names of the drives that do not say that they are no longer enabled and their wheels stand."""
         return tuple(

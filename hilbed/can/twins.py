@@ -25,7 +25,10 @@ class Twins:
             self._answers[identifier - SDO_ANSWER] += 1
 
     def watch(self, node: Node) -> None:
-        """Begins to count for a node that has booted."""
+        """Begins to count for a node that has answered after its reset.
+
+        Not before: a drive that has just been powered starts twice, by its supply and by the reset.
+        """
         self._boots[node.id] = self._heard.boots.get(node.id, 0)
         self._answers[node.id] = 0
 
