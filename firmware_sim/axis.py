@@ -150,7 +150,8 @@ class Axis:
         self.stop = None
         powered = state in _POWERED
         if powered and not self.bridge_enabled:
-            self._start()
+            self._low = 0
+            self._start(self.meter.speed)
         self.bridge_enabled = powered
         if not powered:
             self.speed_ref = 0.0
@@ -181,12 +182,11 @@ class Axis:
         if self._low >= _LOW_TICKS:
             self.fail(ErrorCode.UNDERVOLTAGE)
 
-    def _start(self) -> None:
-        """Takes the wheel over at the speed that it has."""
+    def _start(self, ref: float) -> None:
+        """Has the loop follow `ref` from the speed that the wheel has, at first without current."""
         speed = self.meter.speed
-        self.speed_ref = speed
-        self._low = 0
-        self._loop.reset(speed, speed, self._motor.coasting(speed, self.supply * _QUARTER))
+        self.speed_ref = ref
+        self._loop.reset(ref, speed, self._motor.coasting(speed, self.supply * _QUARTER))
 
     def _tune(self) -> None:
         """Takes new 2xxx values over, without a bump if the wheel is driven."""
@@ -199,7 +199,7 @@ class Axis:
         self._step = self._loop.step
         self._configure()
         if self.bridge_enabled:
-            self._start()
+            self._start(self.speed_ref)
         self._replan()
 
     def _configure(self) -> None:

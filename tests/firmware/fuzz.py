@@ -1,8 +1,8 @@
-"""Random frames into a drive, at random pins: `scripts/firmware-fuzz [FRAMES [SEED]]` prints figures."""
+"""Random frames into a drive at random pins; checks what must hold and prints figures."""
 
 from __future__ import annotations
 
-import sys
+import argparse
 from collections import Counter
 from time import perf_counter
 
@@ -34,7 +34,11 @@ def fuzz(frames: int, seed: int) -> tuple[Watched, Counter[State]]:
 
 
 def main() -> None:
-    frames, seed = (int(given) for given in (*sys.argv[1:], *("1000000", "1")[len(sys.argv) - 1 :]))
+    parser = argparse.ArgumentParser(prog="scripts/firmware-fuzz", description=__doc__)
+    parser.add_argument("frames", type=int, nargs="?", default=1_000_000)
+    parser.add_argument("seed", type=int, nargs="?", default=1)
+    options = parser.parse_args()
+    frames, seed = options.frames, options.seed
     start = perf_counter()
     watched, ticks = fuzz(frames, seed)
     seconds = perf_counter() - start

@@ -172,7 +172,7 @@ def test_changing_the_loop_while_it_runs_is_smooth() -> None:
     wire, wheel = enabled(), Wheel()
     wire.command(0x0F, FIVE)
     drive(wire, wheel, 1000)
-    for kind in (1, 0):
+    for kind in (1, 2, 0):
         wire.node.sdo[0x2010][1].raw = kind
         drive(wire, wheel, 5)
         assert wheel.speed == pytest.approx(5.0, abs=0.15)

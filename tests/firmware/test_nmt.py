@@ -283,3 +283,19 @@ def test_emcy_can_be_moved_and_switched_off() -> None:
     wire.run(1)
     assert wire.take(0x99) == []
     assert wire.take(EMCY) == []
+
+
+def test_each_of_two_masters_has_to_be_alive() -> None:
+    wire = watched()
+    wire.node.sdo[0x1016][2].raw = 0x7E_0032
+    wire.send_message(0x77E, b"\x05")
+    wire.send_message(0x77E, b"")  # no heartbeat
+    beat(wire)
+    assert wire.drive.malformed == 1
+    wire.run(60)
+    beat(wire)  # of the first one alone
+    wire.run(1)
+    assert wire.node.sdo[0x1001].raw == 0x11
+    wire.send_message(0x77E, b"\x05")
+    wire.run(1)
+    assert wire.node.sdo[0x1001].raw == 0
