@@ -9,15 +9,13 @@ from time import monotonic_ns
 from hilbed.can.hardware import Adapter
 from hilbed.types import Frame, Nanos, Received
 
-_STEP = 0.01
-"""s; who waits for frames looks at its deadline this often."""
-
 
 class LiveBus:
-    """`ports.Bus` over an adapter; `pump` lets time pass until a frame comes, 10 ms at most."""
+    """`ports.Bus` over an adapter; `pump` lets time pass until a frame comes, `step` s at most."""
 
-    def __init__(self, adapter: Adapter) -> None:
+    def __init__(self, adapter: Adapter, step: float = 0.01) -> None:
         self.adapter = adapter
+        self._step = step
         self._start = monotonic_ns()
         self._arrived: list[Received] = []
 
@@ -37,17 +35,19 @@ class LiveBus:
 
     def pump(self, t: Nanos) -> Nanos:  # noqa: ARG002
         """Waits for frames and returns the time then."""
-        frames = self.adapter.wait(_STEP)
+        frames = self.adapter.wait(self._step)
         now = self.now
         self._arrived += [Received(now, frame) for frame in frames]
         return now
 
 
 @contextmanager
-def open_bus(interface: str | None, channel: str | None, bitrate: int | None) -> Iterator[LiveBus]:
+def open_bus(
+    interface: str | None, channel: str | None, bitrate: int | None, step: float = 0.01
+) -> Iterator[LiveBus]:
     """Opens a python-can bus and closes it in the end; ScenarioError where it cannot be opened."""
     adapter = Adapter(interface, channel, bitrate)
     try:
-        yield LiveBus(adapter)
+        yield LiveBus(adapter, step)
     finally:
         adapter.close()

@@ -1,0 +1,1 @@
+"""The checks, each a function of the drive under test that yields what it finds."""

@@ -1,0 +1,111 @@
+"""Rounds of SYNC and answers, on a quiet bus or on one that is filled with other frames."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from hilbed.can import nmt
+from hilbed.can.cob import SYNC_FRAME
+from hilbed.can.frame_length import INTERFRAME_BITS, frame_bits
+from hilbed.clock import MILLISECOND, SECOND
+from hilbed.conformance.subject import Subject
+from hilbed.conformance.tpdo import Tpdo
+from hilbed.types import BusError, Frame, Nanos, Received
+
+PERIOD: Nanos = 10 * MILLISECOND
+FILLER = Frame(0x1FFFFFFF, bytes(range(0x51, 0x59)), True)
+"""Loses every arbitration, and no node heeds it."""
+
+
+class Rounds(NamedTuple):
+    """Times (ns) from SYNC to each TPDO, by name; bits that crossed the bus; fillers sent and refused; ns."""
+
+    answers: dict[str, list[Nanos]]
+    bits: int
+    fillers: int
+    refused: int
+    length: Nanos
+
+
+def synchronous(subject: Subject) -> list[str]:
+    """Returns the TPDOs of the table that are sent at every SYNC."""
+    table = subject.node.table
+    return [name for name in table.sends if table.pdos[name].transmission == 1]
+
+
+def rounds(subject: Subject, names: Sequence[str], count: int, fillers: float = 0.0) -> Rounds:
+    """Sends SYNC every 10 ms, and `fillers` other frames a second; the drive's TPDOs answer each SYNC."""
+    link = subject.link
+    subject.manage(nmt.ENTER_PREOPERATIONAL)
+    tpdos = {name: Tpdo(subject, name) for name in names}
+    for tpdo in tpdos.values():
+        tpdo.off()
+        tpdo.on()
+    subject.manage(nmt.START)
+    meter = _Meter({tpdo.cob_id: name for name, tpdo in tpdos.items()})
+    filler = _Filler(link.send, fillers, meter)
+    link.listeners.append(meter.hear)
+    link.each_step.append(filler.fill)
+    begun = link.t
+    try:
+        for k in range(count):
+            link.pause(begun + k * PERIOD - link.t)
+            meter.sync = link.t
+            meter.count(SYNC_FRAME)
+            link.send(SYNC_FRAME)
+        link.pause(begun + count * PERIOD - link.t)
+    finally:
+        link.listeners.remove(meter.hear)
+        link.each_step.remove(filler.fill)
+    return Rounds(meter.answers, meter.bits, filler.sent, filler.refused, link.t - begun)
+
+
+class _Meter:
+    """Counts bits and times answers: the first one of each TPDO after a SYNC."""
+
+    def __init__(self, names: dict[int, str]) -> None:
+        self._names = names
+        self._answered: dict[str, Nanos] = {}
+        self.answers: dict[str, list[Nanos]] = {name: [] for name in names.values()}
+        self.sync: Nanos = 0
+        self.bits = 0
+
+    def count(self, frame: Frame) -> None:
+        """Takes a frame that crosses the bus."""
+        self.bits += frame_bits(frame) + INTERFRAME_BITS
+
+    def hear(self, received: Received) -> None:
+        """Takes a frame that has arrived."""
+        t, frame = received
+        self.count(frame)
+        name = None if frame.extended else self._names.get(frame.id)
+        if name is not None and self._answered.get(name) != self.sync:
+            self._answered[name] = self.sync
+            self.answers[name].append(t - self.sync)
+
+
+class _Filler:
+    """Sends so many frames a second, as far as the bus takes them."""
+
+    def __init__(self, send: Callable[[Frame], None], rate: float, meter: _Meter) -> None:
+        self._send = send
+        self._rate = rate
+        self._meter = meter
+        self._begun: Nanos | None = None
+        self.sent = 0
+        self.refused = 0
+
+    def fill(self, t: Nanos) -> None:
+        """Sends what is due at t; the rest of what is refused is not made up for."""
+        if self._begun is None:
+            self._begun = t
+        due = int(self._rate * (t - self._begun) / SECOND) - self.sent - self.refused
+        for _ in range(due):
+            try:
+                self._send(FILLER)
+            except BusError:  # its queue is full: this is all that it takes
+                self.refused += 1
+                continue
+            self.sent += 1
+            self._meter.count(FILLER)

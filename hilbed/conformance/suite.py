@@ -1,0 +1,101 @@
+"""All checks in their order, each on a drive at rest with its own settings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from functools import partial
+from typing import NamedTuple, TypeAlias
+
+from hilbed.can import cia402, nmt
+from hilbed.can.sdo import SdoError
+from hilbed.can.sdo_aborts import TIMEOUT
+from hilbed.clock import MILLISECOND
+from hilbed.conformance.checks import bus, faults, identity, modes, motion, pdos, states
+from hilbed.conformance.result import Result
+from hilbed.conformance.subject import Stuck, Subject
+from hilbed.types import BusError, Nanos
+
+LISTENING: Nanos = 1100 * MILLISECOND
+"""To hear the heartbeats of everybody on the bus, which come once a second at least as a rule."""
+Check: TypeAlias = Callable[[Subject], Iterable[Result]]
+
+
+class Terms(NamedTuple):
+    """What the checks may do: turn the motor (armed), how fast (rad/s); what the bus is.
+
+    timed: the bus takes time for its bits, as the wire and real ones do and vcan does not.
+    """
+
+    armed: bool
+    speed: float
+    bitrate: int
+    timed: bool
+
+
+class Item(NamedTuple):
+    """A check by its name, and whether it puts current through the motor."""
+
+    name: str
+    check: Check
+    powers: bool = False
+
+
+def suite(terms: Terms) -> list[Item]:
+    """Returns the checks, those without power first."""
+    return [
+        Item("identity", identity.identity),
+        Item("sdo", identity.sdo),
+        Item("modes", modes.modes),
+        Item("pdo", pdos.remap),
+        Item("sync", bus.quiet),
+        Item("load", partial(bus.busy, terms.bitrate, terms.timed)),
+        Item("heartbeat", faults.heartbeat),
+        Item("states without power", states.unpowered),
+        Item("states with power", states.powered, True),
+        Item("fault", faults.fault, True),
+        Item("quick stop", partial(motion.quick_stop, terms.speed), True),
+        Item("abandoned", partial(faults.abandoned, terms.speed), True),
+        Item("limits/speed", partial(motion.speed_limit, terms.speed), True),
+        Item("limits/acceleration", partial(motion.acceleration_limit, terms.speed), True),
+    ]
+
+
+def perform(subject: Subject, terms: Terms) -> Iterator[Result]:
+    """Yields the results as they are found; leaves the drive as it was, but for being at rest.
+
+    Raises BusError where there is no drive, where somebody drives it, or where the bus is lost.
+    """
+    _approach(subject)
+    state = subject.heartbeats.states.get(subject.node.id)
+    try:
+        for item in suite(terms):
+            if item.powers and not terms.armed:
+                yield Result(item.name, "not run", note="puts current through the motor: --arm")
+                continue
+            yield from _guarded(item, subject)
+    finally:
+        with suppress(BusError):
+            subject.settle()
+            subject.manage(nmt.START if state == nmt.OPERATIONAL else nmt.ENTER_PREOPERATIONAL)
+
+
+def _approach(subject: Subject) -> None:
+    """Looks whether there is a drive that nobody drives."""
+    subject.sdo.upload(0x1000, 0)
+    state = subject.state()
+    if state in (cia402.ENABLED, cia402.QUICK_STOP_ACTIVE):
+        raise BusError(f"{subject.node} is in {state}: somebody drives it; switch it off first")
+    subject.link.pause(LISTENING)
+
+
+def _guarded(item: Item, subject: Subject) -> Iterator[Result]:
+    try:
+        yield from item.check(subject)
+    except (SdoError, Stuck) as error:
+        yield Result(item.name, "fail", note=str(error))
+        if isinstance(error, SdoError) and error.code == TIMEOUT:
+            subject.sdo.upload(0x1000, 0)  # raises where the drive is gone
+    refused = subject.settle()
+    if refused:
+        yield Result(f"{item.name}/settings given back", "fail", note="; ".join(refused))
