@@ -77,6 +77,7 @@ def _status(options: Options) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     from hilbed.bustools.options import add_tools
+    from hilbed.conformance.options import add_options as add_conformance_options
 
     text = "A bench for wheeled robots that behaves like a hardware-in-the-loop rig."
     parser = _Parser(prog="hilbed", description=text)
@@ -115,6 +116,8 @@ def _parser() -> argparse.ArgumentParser:
     _add_settings(replay)
     replay.add_argument("--json", action="store_true", help="print what differs as JSON")
     add_tools(_command(commands, "bus", _bus, "look at a bus: its nodes, its frames, its DBC"))
+    conformance = _command(commands, "conformance", _conformance, "check a CiA 402 velocity drive on a bus")
+    add_conformance_options(conformance)
     bench = _command(commands, "bench", _bench, "measure floor, total and where the time goes")
     bench.add_argument("scenario", nargs="?", default="demo", metavar="SCENARIO")
     return parser
@@ -203,6 +206,12 @@ def _bus(options: Options) -> int:
     from hilbed.bustools.options import bus
 
     return bus(options)
+
+
+def _conformance(options: Options) -> int:
+    from hilbed.conformance.command import main as conformance
+
+    return conformance(options)
 
 
 def _bench(options: Options) -> int:
