@@ -171,20 +171,17 @@ class Subject:
         self.link.pause(NMT_SETTLING)
 
     @contextmanager
-    def guarded(self, consumer: Nanos) -> Iterator[int]:
-        """Makes the drive watch a controller that says that it lives until the block ends; yields its number.
+    def guarded(self, consumer: Nanos) -> Iterator[None]:
+        """Makes the drive watch a controller that says that it lives until the block ends.
 
         SdoError where the drive has no heartbeat consumer.
         """
-        controller = next(
-            n for n in range(127, 0, -1) if n != self.node.id and n not in self.heartbeats.states
-        )
-        due: Nanos = self.link.t
+        taken = {self.node.id, *self.heartbeats.states}
+        controller = next(number for number in range(127, 0, -1) if number not in taken)
 
         def beat(t: Nanos) -> None:
-            nonlocal due
-            if t >= due:
-                due = t + HEARTBEAT_PERIOD
+            if t >= self.alive + HEARTBEAT_PERIOD:
+                self.alive = t
                 self.link.send(Frame(HEARTBEAT + controller, bytes((nmt.OPERATIONAL,))))
 
         self.link.each_step.append(beat)
@@ -192,7 +189,7 @@ class Subject:
             self.link.pause(2 * HEARTBEAT_PERIOD)
             self.write("heartbeat_consumer", controller << 16 | consumer // MILLISECOND)
             self.link.pause(2 * HEARTBEAT_PERIOD)
-            yield controller
+            yield
         finally:
             self.link.each_step.remove(beat)
 

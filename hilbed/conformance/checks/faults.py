@@ -30,7 +30,6 @@ def heartbeat(subject: Subject) -> Iterator[Result]:
     except SdoError as error:
         yield unsupported("heartbeat", f"1016:01: abort {error.code:08X}")
         return
-    last = subject.link.t
     heard = subject.link.until(lambda: len(subject.emergencies) > before, CONSUMER + LATE)
     if not heard:
         yield told("heartbeat/emergency", False, f"none within {(CONSUMER + LATE) // MILLISECOND} ms")
@@ -40,7 +39,9 @@ def heartbeat(subject: Subject) -> Iterator[Result]:
     if code != HEARTBEAT_LOST:
         yield told("heartbeat/emergency", False, f"{note}; {HEARTBEAT_LOST:04X} expected")
         return
-    yield judged("heartbeat/emergency", (t - last) / MILLISECOND, (CONSUMER + LATE) / MILLISECOND, "ms", note)
+    yield judged(
+        "heartbeat/emergency", (t - subject.alive) / MILLISECOND, (CONSUMER + LATE) / MILLISECOND, "ms", note
+    )
 
 
 def abandoned(speed: float, subject: Subject) -> Iterator[Result]:

@@ -12,7 +12,7 @@ from hilbed.conformance.result import Result, judged, unsupported
 from hilbed.conformance.subject import Subject
 from hilbed.types import Nanos
 
-REACTION = 0.05
+REACTION = 0.1
 """s that a drive may take before it brakes, and the measurement to notice."""
 MARGIN = 1.2
 SETTLING: Nanos = 1000 * MILLISECOND

@@ -8,7 +8,7 @@ from hilbed.can import cia402
 from hilbed.can.sdo import SdoError
 from hilbed.clock import MILLISECOND
 from hilbed.conformance.expected import COMMANDS, POWERED, after
-from hilbed.conformance.result import Result, unsupported
+from hilbed.conformance.result import Result, told, unsupported
 from hilbed.conformance.subject import STATE_TIMEOUT, Subject
 from hilbed.types import Nanos
 
@@ -67,12 +67,7 @@ def transition(subject: Subject, state: str, command: str) -> Result:
         subject.link.pause(PATIENCE)
         found, took = subject.state(), 0.0
     check = f"states/{state}: {command}"
-    status = "pass" if found in expected else "fail"
-    if found == state:
-        return Result(check, status, note="stays" if found in expected else f"stays, {_or(onward)} expected")
-    wrong = "" if found in expected else f", {_or(expected)} expected"
-    return Result(check, status, 1e3 * took, "ms", note=f"{found}{wrong}")
-
-
-def _or(states: tuple[str, ...]) -> str:
-    return " or ".join(states)
+    note = "stays" if found == state else found
+    if found not in expected:
+        return told(check, False, f"{note}, {' or '.join(expected)} expected")
+    return told(check, True, note) if found == state else told(check, True, note, 1e3 * took, "ms")
