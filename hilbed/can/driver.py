@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import logging
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import can
 
@@ -72,8 +72,18 @@ def reason(error: BaseException) -> str:
     words, cause = str(error) or type(error).__name__, error.__cause__
     if cause is not None and str(cause) not in words:
         words = f"{words}: {cause}"
-    hint = _HINTS.get(_number(error) or 0)
+    hint = _HINTS.get(number_of(error) or 0)
     return " ".join(f"{words} ({hint})".split() if hint else words.split())
+
+
+def number_of(error: BaseException | None) -> int | None:
+    """Returns the operating system's number of an error, its own or that of what caused it."""
+    while error is not None:
+        number = getattr(error, "errno", None) or getattr(error, "error_code", None)
+        if isinstance(number, int):
+            return number
+        error = error.__cause__ or error.__context__
+    return None
 
 
 def message(frame: Frame) -> can.Message:
@@ -97,7 +107,7 @@ def frame_of(received: can.Message) -> Frame | None:
     return Frame(identifier, bytes(received.data), extended) if len(received.data) == size else None
 
 
-def _given(interface: str | None, channel: str | int | None, bitrate: int | None) -> dict[str, str | int]:
+def _given(interface: str | None, channel: str | int | None, bitrate: int | None) -> dict[str, Any]:
     given = {"interface": interface, "channel": channel, "bitrate": bitrate}
     return {key: value for key, value in given.items() if value is not None}
 
@@ -109,16 +119,6 @@ def _unresolved(interface: str | None, error: Exception) -> str:
     if interface is None:
         return f"no interface that python-can knows is named by -i, CAN_INTERFACE or ~/.canrc; {known}"
     return f"unknown interface {interface!r}; {known}"
-
-
-def _number(error: BaseException | None) -> int | None:
-    """Returns the operating system's number of an error, its own or that of what caused it."""
-    while error is not None:
-        number = getattr(error, "errno", None) or getattr(error, "error_code", None)
-        if isinstance(number, int):
-            return number
-        error = error.__cause__ or error.__context__
-    return None
 
 
 def _check_socketcan(names: Names) -> None:

@@ -10,7 +10,7 @@ import can
 
 from hilbed.can.counts import Counts
 from hilbed.can.driver import frame_of, message, open_driver, reason
-from hilbed.can.driver_threads import BROKEN_LINE, Receiver, Sender
+from hilbed.can.driver_threads import BROKEN_LINE, Receiver, Sender, attempt
 from hilbed.types import BusError, Frame
 
 MOST = 256
@@ -28,15 +28,21 @@ class Adapter:
 
     interface, channel, bitrate: None is left to python-can (CAN_INTERFACE …, ~/.canrc). ScenarioError where
     it cannot be opened. name: for messages. Where the bus is lost, `send`, `poll` and `wait` raise BusError.
+    patience: s that `send` may wait for a slow driver, as in lockstep, where simulated time waits with it.
     """
 
     def __init__(
-        self, interface: str | None, channel: str | int | None = None, bitrate: int | None = None
+        self,
+        interface: str | None,
+        channel: str | int | None = None,
+        bitrate: int | None = None,
+        patience: float = 0.0,
     ) -> None:
         self._driver = open_driver(interface, channel, bitrate)
         self.name = str(self._driver.names)
         self.counts = Counts()
-        self._sender = None if self._driver.names.interface in PROMPT else Sender(self._driver.bus)
+        self._patience = patience
+        self._sender = None if self._driver.names.interface in PROMPT else Sender(self._driver.bus, patience)
         self._receiver: Receiver | None = None
         self._next = self._choose()
 
@@ -46,7 +52,7 @@ class Adapter:
         if self._sender is not None:
             trouble = self._sender.put(sending)
         else:
-            trouble = _attempt(self._driver.bus, sending)
+            trouble = attempt(self._driver.bus, sending, self._patience)
         if trouble:
             self.counts.dropped += 1
             raise self._lost("sending", trouble)
@@ -128,15 +134,6 @@ class Adapter:
             return bus.recv
         self._receiver = Receiver(bus)
         return self._receiver.take
-
-
-def _attempt(bus: can.BusABC, sending: can.Message) -> str:
-    """Sends at once; returns what has gone wrong."""
-    try:
-        bus.send(sending, timeout=0.0)
-    except Exception as error:  # a driver may raise anything
-        return reason(error)
-    return ""
 
 
 def _polled(bus: can.BusABC, number: int) -> Receive:
