@@ -3,9 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Literal, NamedTuple, Protocol
 
-from hilbed.types import Pose
+from hilbed.types import Nanos, Pose, Rng
+
+
+class FrameFault(NamedTuple):
+    """What happens to some of the frames on the bus: those of a node, or with an identifier, or all (None).
+
+    action: drop (never sent), delay (sent later by `delay`, ns), duplicate (sent twice), corrupt (a bit is
+    inverted on the bus), silence (drop, of heartbeats alone); probability: of each frame, of each attempt
+    where it is corrupt; rng: for that.
+    """
+
+    action: Literal["drop", "delay", "duplicate", "corrupt", "silence"]
+    node: str | None
+    identifier: int | None
+    probability: float
+    rng: Rng
+    delay: Nanos = 0
+
+
+class Babble(NamedTuple):
+    """A stranger on the bus that sends frames of 8 bytes with one identifier every `period` (ns)."""
+
+    identifier: int
+    period: Nanos
 
 
 class Effects:
@@ -14,16 +37,24 @@ class Effects:
     load_torque: N m at each wheel, positive against forward rotation; friction: coefficient under each
     wheel; radius: factor on each wheel's rolling radius; push: force (N, N) in the map on the body's
     centre of mass and torque (N m) about z; supply_drop: V off the supply's open-circuit voltage;
-    spurious: mean number of false azimuths a frame; blind: the camera delivers nothing.
+    spurious: mean number of false azimuths a frame; blind: the camera delivers nothing; frames, babble: what
+    happens on the bus; bus_off, unpowered: names of nodes whose CAN controller, or whose logic, is off.
     """
 
-    __slots__ = ("_friction", "blind", "friction", "load_torque", "push", "radius", "spurious", "supply_drop")
+    __slots__ = (
+        "_friction", "babble", "blind", "bus_off", "frames", "friction", "load_torque", "push", "radius",
+        "spurious", "supply_drop", "unpowered",
+    )  # fmt: skip
 
     def __init__(self, friction: Sequence[float]) -> None:
         self._friction = list(friction)
         self.load_torque: list[float] = []
         self.friction: list[float] = []
         self.radius: list[float] = []
+        self.frames: list[FrameFault] = []
+        self.babble: list[Babble] = []
+        self.bus_off: set[str] = set()
+        self.unpowered: set[str] = set()
         self.reset()
 
     def reset(self) -> None:
@@ -36,6 +67,8 @@ class Effects:
         self.supply_drop = 0.0
         self.spurious = 0.0
         self.blind = False
+        for knob in (self.frames, self.babble, self.bus_off, self.unpowered):
+            knob.clear()
 
 
 class Surroundings(Protocol):

@@ -14,6 +14,9 @@ from hilbed.can.wire import Wire
 from hilbed.pacer import Paced, Pacer
 from hilbed.types import Nanos
 
+PATIENCE = 5.0
+"""s of the wall clock for which a run in lockstep waits for a slow driver."""
+
 
 class Carriage(NamedTuple):
     """The wire and who moves it; gateway: to a python-can bus, pacer: to the wall clock, if there are any."""
@@ -37,6 +40,7 @@ class Carriage(NamedTuple):
 
     def stop(self) -> None:
         """From now on what goes wrong on the bus is no news."""
+        self.wire.relax()
         if self.gateway is not None:
             self.gateway.stop()
 
@@ -56,7 +60,8 @@ def join(
         return Carriage(wire, medium, None, pacer)
     from hilbed.can.hardware import Adapter
 
-    adapter = Adapter(bus.interface, bus.channel, bus.bitrate)
+    patience = PATIENCE if pacer is None else 0.0
+    adapter = Adapter(bus.interface, bus.channel, bus.bitrate, patience)
     closing.callback(adapter.close)
     gateway = Gateway(wire, adapter, medium, lockstep=pacer is None)
     for node in nodes:

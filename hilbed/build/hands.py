@@ -10,6 +10,7 @@ from hilbed.build.bench import BOOT
 from hilbed.build.carriage import Carriage
 from hilbed.can.base import CanBase
 from hilbed.can.ears import BusEvent
+from hilbed.can.faults import Faults
 from hilbed.can.master import Master
 from hilbed.clock import SECOND, seconds
 from hilbed.types import BusError, Command, Nanos
@@ -35,7 +36,7 @@ class Plant(Protocol):
 class Hands:
     """Boots and stops a bench; tick and period in ns; flush: what is still on its way to sensors comes in.
 
-    power: switches firmware that is elsewhere on.
+    power: switches firmware that is elsewhere on; faults: of the bus.
     """
 
     master: Master
@@ -46,6 +47,7 @@ class Hands:
     tick: Nanos
     period: Nanos
     power: Callable[[Nanos], None] | None = None
+    faults: Faults | None = None
 
     def boot(self) -> None:
         """Brings the drives up, from `BOOT` before t = 0 on."""
@@ -91,5 +93,7 @@ class Hands:
             self.plant.advance(t, end)
 
     def events(self) -> list[str]:
-        """Returns what the drives did that they should not have, one a line."""
-        return [f"t = {seconds(e.t):.3f} s: {e.drive}: {e.text}" for e in self.base.ears.events]
+        """Returns what the drives did that they should not have and what befell the bus, one a line."""
+        faults = self.faults.events if self.faults is not None else []
+        told = sorted([*self.base.ears.events, *faults], key=lambda event: event.t)
+        return [f"t = {seconds(event.t):.3f} s: {event.drive}: {event.text}" for event in told]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 from hilbed import rng
@@ -16,7 +17,9 @@ from hilbed.build.hands import Hands
 from hilbed.build.known import nodes_of, start_of, surroundings
 from hilbed.build.minds import make_controller, make_estimator
 from hilbed.can.base import CanBase
+from hilbed.can.faults import Faults
 from hilbed.can.master import Master
+from hilbed.can.traffic import CONTROLLER
 from hilbed.can.wire import Wire
 from hilbed.clock import nanos
 from hilbed.cost import Cost
@@ -25,6 +28,7 @@ from hilbed.disturbances.schedule import Schedule
 from hilbed.effects import Effects
 from hilbed.loop import Rig
 from hilbed.pacer import Pacer
+from hilbed.plant.axes import Axis
 from hilbed.plant.bullet import BulletWorld
 from hilbed.plant.drivetrain import reflected_inertia
 from hilbed.plant.simulated import SimulatedPlant
@@ -39,6 +43,7 @@ from hilbed.scenario.load import Loaded
 from hilbed.scenario.model import Scenario
 from hilbed.sensors.camera import Camera, open_eye
 from hilbed.sensors.eye import Eye
+from hilbed.types import Nanos
 
 
 def simulated(
@@ -83,12 +88,15 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     inertia = reflected_inertia(spec.motor, spec.gear)
     world = BulletWorld(body, spec, start, inertia, cost)
     closing.callback(world.close)
-    wire = Wire(scenario.bus.bitrate, witness.transfer)
-    port = wire.attach("controller")
+    faults = Faults()
+    wire = Wire(scenario.bus.bitrate, witness.transfer, faults.note)
+    faults.join(wire)
+    port = wire.attach(CONTROLLER, strict=True)
     carriage = join(wire, scenario.bus, nodes, pacer, closing)
     elsewhere.check(nodes, carriage, scenario.terminal)
     terminals = elsewhere.terminals_of(nodes, carriage, scenario.terminal, closing)
     axes = Workshop(spec, moved_inertia(body, inertia), wire, terminals).axes(nodes)
+    schedule.listeners += [faults.update, partial(_power, axes)]
     supply, collect = Supply(spec.supply), None if terminals is None else terminals.collect
     plant = SimulatedPlant(axes, world, supply, schedule, carriage.medium, sensors, tick, cost, collect)
     base = CanBase(Limited(robot, [node.max_speed for node in nodes]), port, nodes, scenario.bus)
@@ -104,7 +112,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
 
     flush = [sensor.flush for sensor in sensors]
     power = None if terminals is None else terminals.power
-    hands = Hands(Master(nodes, port, period), base, plant, carriage, flush, tick, period, power)
+    hands = Hands(Master(nodes, port, period), base, plant, carriage, flush, tick, period, power, faults)
     kinds = {"azimuth": 1} if sensors else {}
     return Bench(
         rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
@@ -112,6 +120,12 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
         carriage.due, lambda: elsewhere.late(base.late, terminals),
         lambda: {"nodes": {node.name: node.kind for node in nodes}, **carriage.account()},
     )  # fmt: skip
+
+
+def _power(axes: Sequence[Axis], t: Nanos, effects: Effects) -> None:
+    """Takes the drives' logic its supply or gives it back."""
+    for axis in axes:
+        axis.power(t, axis.name not in effects.unpowered)
 
 
 def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:

@@ -30,8 +30,9 @@ class Axis:
     """State of one drive: raw `values` by slot, when it was heard, what it is told to do.
 
     state: bits of the statusword that tell states apart; fresh: number of the SYNC that the last position
-    answered; position: raw, at the last complete set; heard: when its last PDO came; late: how often a SYNC
-    was not answered within its cycle.
+    answered; position: raw, at the last complete set; heard, alive: when its last PDO, its last heartbeat
+    came; silent: since when it is and of what, empty if not; late: how often a SYNC was not answered within
+    its cycle.
     """
 
     __slots__ = (
@@ -42,6 +43,7 @@ class Axis:
         "_rpdo",
         "_velocity",
         "_word_first",
+        "alive",
         "controlword",
         "fresh",
         "heard",
@@ -63,7 +65,8 @@ class Axis:
         self.fresh = 0
         self.position: int | None = None
         self.heard: Nanos = 0
-        self.silent = False
+        self.alive: Nanos = 0
+        self.silent = ""
         self.late = 0
         self.speed_ref = 0.0
         self.controlword = ENABLE_OPERATION

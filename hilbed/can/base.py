@@ -90,7 +90,7 @@ class CanBase:
         send(t, SYNC_FRAME)
         if self._sync is None:
             for axis in self._axes:
-                axis.heard = t
+                axis.heard = axis.alive = t
         self._sync, self._sync_before = t, self._sync
         self._syncs += 1
         for axis, speed in zip(self._axes, self._robot.wheel_speeds(command), strict=True):
@@ -157,27 +157,31 @@ class CanBase:
         return Odometry(t if self._sampled is None else self._sampled, distance, turn, v, w, signals)
 
     def _watch(self, t: Nanos) -> None:
-        """Finds drives that have left two SYNCs unanswered for longer than allowed."""
+        """Finds drives that leave two SYNCs unanswered for longer than allowed, or three heartbeats out."""
         before = self._sync_before
         if before is None:
             return
         for axis in self._axes:
-            silent = axis.heard <= before and t - axis.heard > self._patience
-            if silent == axis.silent:
+            silent = self._silence(t, axis, before)
+            if bool(silent) == bool(axis.silent):
                 continue
             axis.silent = silent
-            if not silent:
-                self.ears.note(t, axis, "answers again")
-                continue
-            self.silences += 1
-            self.ears.note(t, axis, f"silent since {seconds(axis.heard):g} s")
-            self._on_silence(t)
+            self.ears.note(t, axis, silent or "answers again")
+            if silent:
+                self.silences += 1
+                self._on_silence(t)
+
+    def _silence(self, t: Nanos, axis: Axis, before: Nanos) -> str:
+        """Returns since when a drive sends no PDOs, or no heartbeats; empty if it does."""
+        if axis.heard <= before and t - axis.heard > self._patience:
+            return f"silent since {seconds(axis.heard):g} s"
+        if t - axis.alive > 3 * MILLISECOND * axis.node.table.heartbeat.drive:
+            return f"without a heartbeat since {seconds(axis.alive):g} s"
+        return ""
 
     def _hold(self, t: Nanos) -> None:
         """Goes on with what was heard last."""
 
     def _fail(self, t: Nanos) -> None:
-        silent = next(axis for axis in self._axes if axis.silent)
-        raise BusError(
-            f"t = {seconds(t):g} s: {silent.node} has been silent since {seconds(silent.heard):g} s"
-        )
+        axis = next(axis for axis in self._axes if axis.silent)
+        raise BusError(f"t = {seconds(t):g} s: {axis.node} has been {axis.silent}")

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from hilbed.can.wire import Port, Wire
+from hilbed.can.port import Port
+from hilbed.can.wire import Wire
 from hilbed.types import BusError
 
 

@@ -25,10 +25,11 @@ class Ears:
     """Hears everything that is no PDO; `events` in the order of hearing, `ignored` counts the rest."""
 
     def __init__(self, axes: Iterable[Axis]) -> None:
+        self._axes = tuple(axes)
         self.events: list[BusEvent] = []
         self.ignored = 0
         self._heeded: dict[int, tuple[Axis, Callable[[Axis, Received], None]]] = {}
-        for axis in axes:
+        for axis in self._axes:
             self._heeded[EMERGENCY + axis.node.id] = axis, self._emergency
             self._heeded[HEARTBEAT + axis.node.id] = axis, self._heartbeat
 
@@ -67,6 +68,10 @@ class Ears:
         data = received.frame.data
         if len(data) != 1:
             self.ignored += 1
-        elif data[0] != nmt.OPERATIONAL:
+            return
+        for other in self._axes:
+            if other.node.id == axis.node.id:
+                other.alive = received.t
+        if data[0] != nmt.OPERATIONAL:
             state = nmt.STATE_NAMES.get(data[0], f"in the unknown state {data[0]:#x}")
             self.note(received.t, axis, f"no longer operational: {state}")

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, TypeAlias
 
 from hilbed.can.error_state import BUS_OFF, NO_POWER, ErrorState
+from hilbed.clock import seconds
 from hilbed.types import BusError, Frame, Nanos, Received
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ class Port:
         """Takes back what is queued and not on the bus yet."""
         self._wire.withdraw(self)
 
-    def admits(self, frame: Frame) -> bool:
+    def admits(self, t: Nanos, frame: Frame) -> bool:
         """Returns whether a frame can be queued, else counts it as lost; BusError if the node is strict."""
         why = self.errors.absent
         if self.strict and not why and self._wire.waiting(self) >= MOST:
@@ -110,7 +111,7 @@ class Port:
             return True
         self.lost += 1
         if self.strict:
-            raise BusError(f"{self.name} cannot send {frame.id:#x}: {why}")
+            raise BusError(f"t = {seconds(t):g} s: {self.name} cannot send {frame.id:03X}: {why}")
         return False
 
     def _store(self, t: Nanos, frame: Frame) -> None:

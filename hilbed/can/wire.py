@@ -95,6 +95,21 @@ class Wire:
         self._trouble.forget(port)
         self._review()
 
+    def port(self, name: str) -> Port:
+        """Returns the first node with that name; KeyError where there is none."""
+        for port in self._ports:
+            if port.name == name:
+                return port
+        raise KeyError(name)
+
+    def relax(self) -> None:
+        """Lets strict nodes be strict no more and takes back what they have queued, for it is too late."""
+        for port in self._ports:
+            if port.strict:
+                port.strict = False
+                self.withdraw(port)
+        self._review()
+
     def tamper(self, tamper: Tamper | None) -> None:
         """Lets somebody meddle with the frames from now on; None: nobody any more."""
         self._tamper = self._trouble.tamper = tamper
@@ -160,7 +175,7 @@ class Wire:
     def _queue(self, t: Nanos, frame: Frame, sender: Port) -> None:
         """Queues a frame of `sender` at `t`, or now if `t` is past."""
         bits = frame_bits(frame)
-        if sender.guarded and not sender.admits(frame):
+        if sender.guarded and not sender.admits(t, frame):
             return
         identifier, _, extended, remote = frame
         key = arbitration(identifier, extended, remote)

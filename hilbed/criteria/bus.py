@@ -12,7 +12,7 @@ SPAN = 0.1  # s over which the load is taken
 
 
 def bus_load(signals: Signals) -> float:
-    """Part of the time in which a frame is on the bus."""
+    """Part of the time in which a frame or an error frame is on the bus."""
     return mean(load(signals)[1])
 
 
@@ -23,17 +23,27 @@ def bus_load_max(signals: Signals) -> float:
 
 def bus_frames(signals: Signals) -> float:
     """Number of frames."""
-    return float(np.count_nonzero(signals["bus/t"] >= 0))
+    return float(np.count_nonzero(_received(signals)))
 
 
 def bus_latency_mean(signals: Signals) -> float:
     """Time from queueing a frame to its last bit, mean."""
-    return mean(signals["bus/latency"][signals["bus/t"] >= 0])
+    return mean(signals["bus/latency"][_received(signals)])
 
 
 def bus_latency_max(signals: Signals) -> float:
     """Time from queueing a frame to its last bit, longest."""
-    return largest(signals["bus/latency"][signals["bus/t"] >= 0])
+    return largest(signals["bus/latency"][_received(signals)])
+
+
+def bus_errors(signals: Signals) -> float:
+    """Number of error frames."""
+    return float(np.count_nonzero((signals["bus/t"] >= 0) & (signals["bus/error"] != 0)))
+
+
+def _received(signals: Signals) -> Column:
+    """Tells which rows are frames that got through."""
+    return np.asarray((signals["bus/t"] >= 0) & (signals["bus/error"] == 0))
 
 
 def load(signals: Signals) -> tuple[Column, Column]:

@@ -72,6 +72,7 @@ _RUN_UNITS = {
         "bus_frames": "",
         "bus_latency_mean": "s",
         "bus_latency_max": "s",
+        "bus_errors": "",
     },
     "realtime": {
         "missed_deadlines": "",

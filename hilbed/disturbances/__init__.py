@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hilbed.disturbances.bodies import Push, SlipPatch, WheelRadius, push, slip_patch, wheel_radius
+from hilbed.disturbances.bus import BusFault, babbling_node, bus_off, frame_fault, lost_heartbeat, node_reset
 from hilbed.disturbances.drives import LoadTorque, SupplySag, load_torque, supply_sag
 from hilbed.disturbances.schedule import Disturbance, Schedule
 from hilbed.disturbances.vision import CameraLoss, SpuriousAzimuths, camera_loss, spurious_azimuths
@@ -19,8 +20,18 @@ DISTURBANCES: dict[str, Callable[[Any, int, Rng], Disturbance]] = {
     "supply_sag": supply_sag,
     "spurious_azimuths": spurious_azimuths,
     "camera_loss": camera_loss,
+    "drop": frame_fault,
+    "corrupt": frame_fault,
+    "delay": frame_fault,
+    "duplicate": frame_fault,
+    "babbling_node": babbling_node,
+    "bus_off": bus_off,
+    "lost_heartbeat": lost_heartbeat,
+    "node_reset": node_reset,
 }
 
-DisturbanceSpec = LoadTorque | SlipPatch | WheelRadius | Push | SupplySag | SpuriousAzimuths | CameraLoss
+DisturbanceSpec = (
+    LoadTorque | SlipPatch | WheelRadius | Push | SupplySag | SpuriousAzimuths | CameraLoss | BusFault
+)
 
 __all__ = ["DISTURBANCES", "Disturbance", "DisturbanceSpec", "Schedule"]

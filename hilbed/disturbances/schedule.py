@@ -34,10 +34,14 @@ def drawn(size: float, spread: float, rng: Rng) -> float:
 
 
 class Schedule:
-    """Applies the disturbances that are active; `effects` holds the result until the next call."""
+    """Applies the disturbances that are active; `effects` holds the result until the next call.
+
+    listeners: told the time and the effects whenever they may have changed.
+    """
 
     def __init__(self, entries: Sequence[tuple[DisturbanceBase, Disturbance]], effects: Effects) -> None:
         self.effects = effects
+        self.listeners: list[Callable[[Nanos, Effects], None]] = []
         self._entries = [(nanos(spec.start), _end(spec), disturbance) for spec, disturbance in entries]
         self._active: list[tuple[Nanos, Disturbance]] = []
         self._edge: Nanos = 0  # when the next one starts or ends
@@ -54,6 +58,8 @@ class Schedule:
         for start, disturbance in self._active:
             held = disturbance(t - start, surroundings, self.effects)
             self._again = min(self._again, t + held)
+        for listen in self.listeners:
+            listen(t, self.effects)
 
     def _switch(self, t: Nanos) -> None:
         self._active = [(start, act) for start, end, act in self._entries if start <= t < end]

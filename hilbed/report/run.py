@@ -138,7 +138,8 @@ def _spans(scenario: Mapping[str, Any]) -> tuple[Span, ...]:
 
 
 def _span(letter: str, block: Mapping[str, Any]) -> Span:
-    words = [str(block["kind"]).replace("_", " "), *([str(block["drive"])] if block.get("drive") else [])]
+    about = block.get("drive") or block.get("node")
+    words = [str(block["kind"]).replace("_", " "), *([str(about)] if about else [])]
     start, length = float(block.get("start") or 0.0), block.get("length")
     corners = (block.get("corner"), block.get("opposite"))
     area = tuple(float(part) for corner in corners for part in corner or ()) if all(corners) else ()

@@ -10,10 +10,12 @@ from typing import Any
 
 from hilbed.can.load import periodic_load
 from hilbed.can.specs import BusSpec, NodeSpec, resolve
+from hilbed.can.traffic import CONTROLLER, senders
 from hilbed.clock import nanos
 from hilbed.control import ControllerSpec, ReferenceSpec
 from hilbed.criteria import METRICS, CriterionSpec, metric_of
 from hilbed.disturbances import DisturbanceSpec
+from hilbed.disturbances.bus import BusFault
 from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.plant.chopper import Switched, periods
@@ -210,6 +212,40 @@ def _disturbed(
             )
 
 
+def _bus_faults(
+    disturbances: list[DisturbanceSpec], robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec
+) -> Problems:
+    """A fault of the bus needs the node or the frames that it is about."""
+    drives = ROBOTS[robot.kind].drives
+    with suppress(ScenarioError):
+        sent = senders(resolve(nodes, drives))
+        for k, fault in enumerate(disturbances):
+            if isinstance(fault, BusFault):
+                kinds = {name: spec.kind for name, spec in nodes.items()}
+                for key, problem in _no_such(fault, [*drives, CONTROLLER], kinds, {} if bus.guests else sent):
+                    yield Problem(("disturbances", k, key), f"disturbances.{k}.{key}: {problem}")
+
+
+def _no_such(
+    fault: BusFault, known: list[str], kinds: Mapping[str, str], sent: Mapping[int, str]
+) -> Iterator[tuple[str, str]]:
+    """Yields the key of a fault that cannot be, and why; sent: who sends an identifier, empty: anybody."""
+    node, identifier = getattr(fault, "node", None), getattr(fault, "identifier", None)
+    if node is not None and node not in known:
+        yield "node", f"there is no node {node!r} on the bus{nearest(node, known)}"
+        return
+    if fault.kind == "node_reset" and node == CONTROLLER:
+        yield "node", f"only a drive can lose its supply; there are {', '.join(known[:-1])}"
+    if fault.kind in ("node_reset", "bus_off") and kinds.get(str(node), "simulated") != "simulated":
+        yield "node", f"{node} is {kinds[str(node)]}: its CAN controller and its supply are not here"
+    if fault.kind == "babbling_node" or identifier is None or not sent:
+        return
+    if identifier not in sent:
+        yield "identifier", f"nobody sends {identifier:#05x}"
+    elif node not in (None, sent[identifier]):
+        yield "identifier", f"{identifier:#05x} is sent by {sent[identifier]}, not by {node}"
+
+
 def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems:
     drives = ROBOTS[robot.kind].drives
     for name, criterion in criteria.items():
@@ -225,5 +261,5 @@ def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems
 
 CHECKS: tuple[Callable[..., Problems], ...] = (
     _periods, _ticks, _nodes, _beacons, _start, _path,
-    _files, _body, _recording, _cameras, _food, _guidance, _recorded, _disturbed, _judged,
+    _files, _body, _recording, _cameras, _food, _guidance, _recorded, _disturbed, _bus_faults, _judged,
 )  # fmt: skip

@@ -134,6 +134,8 @@ def frames_on_bus(duration: float, rng: np.random.Generator) -> Columns:
         "bus/t": t,
         "bus/latency": 230e-6 + rng.exponential(120e-6, count),
         "bus/duration": rng.uniform(180e-6, 230e-6, count),
+        "bus/arbitration": rng.exponential(40e-6, count),
+        "bus/error": np.zeros(count, np.int64),
         "bus/id": rng.choice(np.array([0x80, 0x181, 0x182, 0x201, 0x202, 0x281, 0x282]), count),
     }
 

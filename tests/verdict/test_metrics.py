@@ -160,11 +160,16 @@ def test_bus_load_is_the_part_of_time_with_frames() -> None:
     t = np.arange(1000) * 1e-3 + 5e-4
     run = Signals(t=T)
     run |= {"bus/t": t, "bus/duration": np.where(t < 0.1, 5e-4, 2e-4), "bus/latency": t * 1e-3}
+    run |= {"bus/error": np.zeros(1000, np.int64)}
     run = Signals(run)
     assert measure(run, "bus_load") == pytest.approx(0.23)
     assert measure(run, "bus_load_max") == pytest.approx(0.5)
     assert measure(run, "bus_latency_max") == pytest.approx(0.9995e-3)
-    assert measure(run, "bus_frames") == 1000
+    assert (measure(run, "bus_frames"), measure(run, "bus_errors")) == (1000, 0)
+    run["bus/error"][-100:] = 1
+    assert (measure(run, "bus_frames"), measure(run, "bus_errors")) == (900, 100)
+    assert measure(run, "bus_latency_max") == pytest.approx(0.8995e-3), "error frames are no latency"
+    assert measure(run, "bus_load") == pytest.approx(0.23), "but they take the bus"
 
 
 def test_a_window_cuts_every_signal_by_its_own_time() -> None:

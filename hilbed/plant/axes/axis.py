@@ -34,6 +34,10 @@ class Axis(Protocol):
         """Runs a tick of the firmware alone: the shaft is held and carries no current."""
         ...
 
+    def power(self, t: Nanos, on: bool) -> None:
+        """Gives the firmware's logic its supply or takes it away; it boots when it comes back."""
+        ...
+
     def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:
         """Runs the tick that starts at `t` and returns the torque (N m) at the wheel, mean over the tick.
 

@@ -56,6 +56,9 @@ class EcuAxis:
     def idle(self, t: Nanos, angle: float, supply: int) -> None:
         """The firmware has had its pins; nothing moves here."""
 
+    def power(self, t: Nanos, on: bool) -> None:
+        """Has a supply elsewhere, which no disturbance reaches."""
+
     def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:  # noqa: ARG002
         train, answer = self._train, self._terminal.answer
         self.duty = pins.duty(answer.duty)

@@ -24,6 +24,9 @@ class MirroredAxis:
     def idle(self, t: Nanos, angle: float, supply: int) -> None:
         self._axis.idle(t, -angle, supply)
 
+    def power(self, t: Nanos, on: bool) -> None:
+        self._axis.power(t, on)
+
     def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:
         axis = self._axis
         torque = -axis.step(t, -angle, -speed, volts, supply)

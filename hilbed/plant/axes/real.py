@@ -43,6 +43,9 @@ class RealAxis:
     def idle(self, t: Nanos, angle: float, supply: int) -> None:
         """Needs no ticks."""
 
+    def power(self, t: Nanos, on: bool) -> None:
+        """Has a supply elsewhere, which no disturbance reaches."""
+
     def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:  # noqa: ARG002
         reported = self._reported
         self.target = reported.speed if isfinite(reported.speed) else 0.0

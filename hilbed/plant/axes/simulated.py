@@ -17,9 +17,29 @@ class Port(Bus, Protocol):
 
     def accept(self, identifiers: Collection[int]) -> None: ...
 
+    def unplug(self, t: Nanos) -> None: ...
+
+    def plug(self, t: Nanos) -> None: ...
+
 
 Attach: TypeAlias = Callable[[str], Port]
 """Puts a node on the bus, by name."""
+
+
+class Unpowered:
+    """Firmware whose logic has no supply: it hears and says nothing, and the bridge is open."""
+
+    bridge_enabled = False
+    speed_ref = 0.0
+
+    def __init__(self) -> None:
+        self.outbox: list[Frame] = []
+
+    def on_frame(self, t: Nanos, frame: Frame) -> None:
+        """Takes a frame."""
+
+    def tick(self, t: Nanos, counts: int, current: int, supply: int) -> int:  # noqa: ARG002
+        return 0
 
 
 class SimulatedAxis:
@@ -30,14 +50,15 @@ class SimulatedAxis:
     """
 
     __slots__ = (
-        "_outbox", "coulomb", "current", "duty", "encoder", "firmware", "name", "port", "speed_ref",
+        "_node", "_outbox", "coulomb", "current", "duty", "encoder", "firmware", "name", "port", "speed_ref",
         "supply_current", "target", "train",
     )  # fmt: skip
 
     def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
         self.name = name
         self.port = attach(name)
-        self.firmware = Drive(node, self.port.accept)
+        self._node = node
+        self.firmware: Drive | Unpowered = Drive(node, self.port.accept)
         self._outbox = cast("list[Frame]", self.firmware.outbox)  # frames with the same fields
         self.train = train
         self.encoder = encoder
@@ -50,6 +71,13 @@ class SimulatedAxis:
 
     def idle(self, t: Nanos, angle: float, supply: int) -> None:
         self._tick(t, angle, 0, supply)
+
+    def power(self, t: Nanos, on: bool) -> None:
+        if on is not isinstance(self.firmware, Unpowered):
+            return
+        (self.port.plug if on else self.port.unplug)(t)
+        self.firmware = Drive(self._node, self.port.accept) if on else Unpowered()
+        self._outbox = cast("list[Frame]", self.firmware.outbox)
 
     def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:
         train, firmware = self.train, self.firmware
