@@ -33,7 +33,7 @@ def main(options: argparse.Namespace) -> int:
     results: list[Result] = []
     with _end(options, bitrate) as end:
         about = {"node": node.id, "axis": node.axis, "drive": node.table.name, "bus": end.name}
-        terms = Terms(options.arm, options.speed, bitrate, end.timed)
+        terms = Terms(options.arm, options.speed, bitrate, end.exact)
         for result in perform(Subject(end.link, node), terms):
             results.append(result)
             if not options.json:

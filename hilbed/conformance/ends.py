@@ -15,24 +15,21 @@ from hilbed.types import Nanos
 
 WIRE = "hilbed"
 _FOREVER: Nanos = 1 << 62
-_UNTIMED = ("virtual", "udp_multicast")
 
 
 class End(NamedTuple):
-    """A link to the drive; its bus's name; whether that takes time for its bits."""
+    """A link to the drive; its bus's name; whether that is the simulated wire."""
 
     link: Link
     name: str
-    timed: bool
+    exact: bool
 
 
 @contextmanager
 def live(interface: str | None, channel: str | None, bitrate: int | None) -> Iterator[End]:
     """Opens a python-can bus; ScenarioError where it cannot be opened."""
     with open_bus(interface, channel, bitrate, step=0.001) as bus:
-        name = bus.adapter.name
-        timed = not (name.split()[0] in _UNTIMED or "vcan" in name)
-        yield End(Link(bus, bus.pump, bus.now, _FOREVER), name, timed)
+        yield End(Link(bus, bus.pump, bus.now, _FOREVER), bus.adapter.name, exact=False)
 
 
 def on_the_wire(desk: Desk, bitrate: int) -> End:
@@ -47,7 +44,7 @@ def on_the_wire(desk: Desk, bitrate: int) -> End:
         wire.advance(t + MILLISECOND)
         return t + MILLISECOND
 
-    return End(Link(port, pump, 0, _FOREVER), f"wire, {bitrate} bit/s", True)
+    return End(Link(port, pump, 0, _FOREVER), f"wire, {bitrate} bit/s", exact=True)
 
 
 def simulated(node: int, bitrate: int) -> End:

@@ -8,24 +8,35 @@ from typing import NamedTuple
 from hilbed.can import nmt
 from hilbed.can.cob import SYNC_FRAME
 from hilbed.can.frame_length import INTERFRAME_BITS, frame_bits
+from hilbed.can.link import Link
 from hilbed.clock import MILLISECOND, SECOND
 from hilbed.conformance.subject import Subject
 from hilbed.conformance.tpdo import Tpdo
 from hilbed.types import BusError, Frame, Nanos, Received
 
 PERIOD: Nanos = 10 * MILLISECOND
+PATIENCE: Nanos = 100 * MILLISECOND
+"""After which a SYNC is taken to have no answer."""
 FILLER = Frame(0x1FFFFFFF, bytes(range(0x51, 0x59)), True)
 """Loses every arbitration, and no node heeds it."""
 
 
 class Rounds(NamedTuple):
-    """Times (ns) from SYNC to each TPDO, by name; bits that crossed the bus; fillers sent and refused; ns."""
+    """Times (ns) from SYNC to each TPDO, by name; bits that crossed the bus, and in which time (ns).
+
+    syncs: how many there were; refused: other frames that the bus's driver did not take.
+    """
 
     answers: dict[str, list[Nanos]]
+    syncs: int
     bits: int
-    fillers: int
     refused: int
     length: Nanos
+
+    @property
+    def complete(self) -> bool:
+        """Whether every SYNC was answered by every TPDO."""
+        return all(len(times) == self.syncs for times in self.answers.values())
 
 
 def synchronous(subject: Subject) -> list[str]:
@@ -35,7 +46,7 @@ def synchronous(subject: Subject) -> list[str]:
 
 
 def rounds(subject: Subject, names: Sequence[str], count: int, fillers: float = 0.0) -> Rounds:
-    """Sends SYNC every 10 ms, and `fillers` other frames a second; the drive's TPDOs answer each SYNC."""
+    """Sends SYNC every 10 ms, once the one before is answered, and `fillers` other frames a second."""
     link = subject.link
     subject.manage(nmt.ENTER_PREOPERATIONAL)
     tpdos = {name: Tpdo(subject, name) for name in names}
@@ -47,18 +58,20 @@ def rounds(subject: Subject, names: Sequence[str], count: int, fillers: float = 
     filler = _Filler(link.send, fillers, meter)
     link.listeners.append(meter.hear)
     link.each_step.append(filler.fill)
-    begun = link.t
     try:
-        for k in range(count):
-            link.pause(begun + k * PERIOD - link.t)
-            meter.sync = link.t
-            meter.count(SYNC_FRAME)
-            link.send(SYNC_FRAME)
-        link.pause(begun + count * PERIOD - link.t)
+        meter.start(link)  # a node that has just been started may be late with its first answer
+        link.until(meter.answered, PATIENCE)
+        meter.clear()
+        begun = link.t
+        for _ in range(count):
+            due = link.t + PERIOD
+            meter.start(link)
+            link.until(meter.answered, PATIENCE)
+            link.pause(due - link.t)
     finally:
         link.listeners.remove(meter.hear)
         link.each_step.remove(filler.fill)
-    return Rounds(meter.answers, meter.bits, filler.sent, filler.refused, link.t - begun)
+    return Rounds(meter.answers, count, meter.bits, filler.refused, link.t - begun)
 
 
 class _Meter:
@@ -66,10 +79,27 @@ class _Meter:
 
     def __init__(self, names: dict[int, str]) -> None:
         self._names = names
-        self._answered: dict[str, Nanos] = {}
+        self._missing: set[str] = set()
         self.answers: dict[str, list[Nanos]] = {name: [] for name in names.values()}
-        self.sync: Nanos = 0
+        self._sync: Nanos = 0
         self.bits = 0
+
+    def start(self, link: Link) -> None:
+        """Sends SYNC."""
+        self._missing = {*self.answers}
+        self._sync = link.t
+        self.count(SYNC_FRAME)
+        link.send(SYNC_FRAME)
+
+    def answered(self) -> bool:
+        """Tells whether every TPDO has come since SYNC."""
+        return not self._missing
+
+    def clear(self) -> None:
+        """Forgets what has been so far."""
+        self.bits = 0
+        for times in self.answers.values():
+            times.clear()
 
     def count(self, frame: Frame) -> None:
         """Takes a frame that crosses the bus."""
@@ -80,9 +110,9 @@ class _Meter:
         t, frame = received
         self.count(frame)
         name = None if frame.extended else self._names.get(frame.id)
-        if name is not None and self._answered.get(name) != self.sync:
-            self._answered[name] = self.sync
-            self.answers[name].append(t - self.sync)
+        if name in self._missing:
+            self._missing.remove(name)
+            self.answers[name].append(t - self._sync)
 
 
 class _Filler:

@@ -15,6 +15,9 @@ from hilbed.clock import MILLISECOND, seconds
 from hilbed.types import Frame, HilbedError, Nanos, Received
 
 STATE_TIMEOUT: Nanos = 1000 * MILLISECOND
+SDO_TIMEOUT: Nanos = 1000 * MILLISECOND
+SLOWEST = 0.01
+"""rad/s, below which a wheel stands."""
 NMT_SETTLING: Nanos = 20 * MILLISECOND
 HEARTBEAT_PERIOD: Nanos = 20 * MILLISECOND
 
@@ -53,7 +56,7 @@ class Subject:
     def __init__(self, link: Link, node: Node) -> None:
         self.link = link
         self.node = node
-        self.sdo = SdoClient(link, node.name, node.id)
+        self.sdo = SdoClient(link, node.name, node.id, SDO_TIMEOUT)
         self.heartbeats = nmt.HeartbeatConsumer()
         self.emergencies: list[tuple[Nanos, int]] = []
         self.alive: Nanos = link.t
@@ -160,7 +163,7 @@ class Subject:
         self.target(0.0)
         if self.state() == cia402.ENABLED:
             self.command(cia402.QUICK_STOP)
-            self.reach((cia402.DISABLED, cia402.QUICK_STOP_ACTIVE, cia402.FAULT))
+        self.until(lambda speed: abs(speed) < SLOWEST, 2 * STATE_TIMEOUT)  # without power it would coast
         self._disable()
 
     # ---- network

@@ -24,13 +24,13 @@ Check: TypeAlias = Callable[[Subject], Iterable[Result]]
 class Terms(NamedTuple):
     """What the checks may do: turn the motor (armed), how fast (rad/s); what the bus is.
 
-    timed: the bus takes time for its bits, as the wire and real ones do and vcan does not.
+    exact: it is the simulated wire, which takes every load.
     """
 
     armed: bool
     speed: float
     bitrate: int
-    timed: bool
+    exact: bool
 
 
 class Item(NamedTuple):
@@ -49,7 +49,7 @@ def suite(terms: Terms) -> list[Item]:
         Item("modes", modes.modes),
         Item("pdo", pdos.remap),
         Item("sync", bus.quiet),
-        Item("load", partial(bus.busy, terms.bitrate, terms.timed)),
+        Item("load", partial(bus.busy, terms.bitrate, terms.exact)),
         Item("heartbeat", faults.heartbeat),
         Item("states without power", states.unpowered),
         Item("states with power", states.powered, True),
