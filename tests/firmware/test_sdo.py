@@ -123,7 +123,7 @@ def test_a_toggle_bit_that_does_not_alternate() -> None:
     wire = powered()
     raw(wire, b"\x40\x08\x10\x00")
     assert raw(wire, b"\x60")[0] == 0x00
-    assert code(raw(wire, b"\x60")) == 0x05030000
+    assert raw(wire, b"\x60") == b"\x80\x08\x10\x00" + struct.pack("<I", 0x05030000)
     assert code(raw(wire, b"\x70")) == 0x05040001  # the transfer is over
 
 
@@ -148,15 +148,68 @@ def test_more_than_fits_without_a_size_announced() -> None:
     assert code(raw(wire, b"\x00abcdefg")) == 0x06070012
 
 
-@pytest.mark.parametrize("command", [0xA0, 0xC0, 0xE0, 0x00, 0x60])
-def test_blocks_and_segments_out_of_the_blue(command: int) -> None:
-    assert code(raw(powered(), bytes((command, 0x17, 0x10)))) == 0x05040001
+@pytest.mark.parametrize(
+    ("request_", "named"),
+    [
+        (b"\xa0\x17\x10\x01", b"\x17\x10\x01"),  # blocks name their object
+        (b"\xc0\x17\x10\x01", b"\x17\x10\x01"),
+        (b"\xe0\x17\x10\x01", b"\x17\x10\x01"),
+        (b"\x00\x17\x10\x01", b"\0\0\0"),  # in a segment these bytes are data
+        (b"\x60\x17\x10\x01", b"\0\0\0"),
+    ],
+)
+def test_blocks_and_segments_out_of_the_blue(request_: bytes, named: bytes) -> None:
+    assert raw(powered(), request_) == b"\x80" + named + struct.pack("<I", 0x05040001)
+
+
+@pytest.mark.parametrize("text", [b"a", b"abc", b"abcd", b"abcde"])
+def test_how_a_text_is_uploaded(text: bytes) -> None:
+    """At most four bytes go into the answer itself, which tells how many it does not use."""
+    wire = powered()
+    wire.node.sdo.download(0x2000, 0, text)
+    answer = raw(wire, b"\x40\x00\x20\x00")
+    if len(text) > 4:
+        assert answer == b"\x41\x00\x20\x00" + struct.pack("<I", len(text))
+    else:
+        assert answer == bytes((0x43 | (4 - len(text)) << 2,)) + b"\x00\x20\x00" + text.ljust(4, b"\0")
+
+
+def test_a_download_whose_size_was_not_announced() -> None:
+    wire = powered()
+    raw(wire, b"\x20\x00\x20\x00\x63\0\0\0")  # four bytes that mean nothing
+    assert raw(wire, b"\x00abcdefg") == b"\x20" + bytes(7)
+    assert raw(wire, b"\x1bhi") == b"\x30" + bytes(7)
+    assert wire.node.sdo.upload(0x2000, 0) == b"abcdefghi"
+
+
+@pytest.mark.parametrize("segment", [b"\x01x", b"\x11x", b"\x60", b"\x70"])
+@pytest.mark.parametrize(
+    "requests",
+    [
+        [b"\x21\x00\x20\x00\x01\0\0\0", b"\x0dx"],  # a download to its end
+        [b"\x21\x00\x20\x00\x0a\0\0\0", b"\x2b\x17\x10\x00\x64"],  # left for another one
+        [b"\x21\x00\x20\x00\x0a\0\0\0", b"\x40\x17\x10\x00"],
+        [b"\x40\x08\x10\x00", b"\x60", b"\x70", b"\x60", b"\x70"],  # an upload to its end
+        [b"\x40\x08\x10\x00", b"\x2b\x17\x10\x00\x64"],
+        [b"\x40\x08\x10\x00", b"\x40\x17\x10\x00"],
+        [b"\x40\x08\x10\x00", b"\x40\x17\x10\x07"],  # left for one that is refused
+    ],
+)
+def test_a_transfer_that_has_ended_goes_no_further(requests: list[bytes], segment: bytes) -> None:
+    wire = powered()
+    for request in requests:
+        raw(wire, request)
+    assert raw(wire, segment) == b"\x80\0\0\0" + struct.pack("<I", 0x05040001)
+    wire.take(ANSWER)
+    wire.run(1100)
+    assert wire.take(ANSWER) == []  # nor is it given up later
 
 
 def test_an_abort_of_the_client_ends_the_transfer_without_an_answer() -> None:
     wire = powered()
     raw(wire, b"\x40\x08\x10\x00")
     wire.send_message(REQUEST, b"\x80\x08\x10\x00" + bytes(4))
+    wire.run(1100)
     assert wire.take(ANSWER) == []
     assert code(raw(wire, b"\x60")) == 0x05040001
 
