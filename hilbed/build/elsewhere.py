@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from time import monotonic
 
@@ -10,6 +10,7 @@ from hilbed.build.carriage import Carriage
 from hilbed.can.node import Node
 from hilbed.can.specs import TerminalSpec
 from hilbed.can.terminals import Terminals
+from hilbed.can.wake import Wake
 from hilbed.scenario.model import Scenario
 from hilbed.types import Nanos, ScenarioError
 
@@ -60,6 +61,19 @@ def terminals_of(
     terminals = Terminals(ecus, gateway.adapter.send, gateway.pull, monotonic, carriage.pacer is None)
     gateway.intercept(terminals.take)
     return terminals
+
+
+def wakers(
+    nodes: Sequence[Node], carriage: Carriage, terminals: Terminals | None
+) -> list[Callable[[Nanos], None]]:
+    """Returns what brings up, in the time that it takes there, what is elsewhere."""
+    found: list[Callable[[Nanos], None]] = [] if terminals is None else [terminals.power]
+    real, gateway = [node for node in nodes if node.kind == "real"], carriage.gateway
+    if real and gateway is not None:
+        wake = Wake(real, gateway.adapter.send, gateway.pull, monotonic)
+        gateway.intercept(wake.take)
+        found.append(wake.up)
+    return found
 
 
 def late(answers: Mapping[str, int], terminals: Terminals | None) -> dict[str, int]:

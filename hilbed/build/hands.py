@@ -36,7 +36,7 @@ class Plant(Protocol):
 class Hands:
     """Boots and stops a bench; tick and period in ns; flush: what is still on its way to sensors comes in.
 
-    power: switches firmware that is elsewhere on; faults: of the bus.
+    wake: brings up what is elsewhere, before time begins; faults: of the bus.
     """
 
     master: Master
@@ -46,13 +46,13 @@ class Hands:
     flush: Sequence[Callable[[], None]]
     tick: Nanos
     period: Nanos
-    power: Callable[[Nanos], None] | None = None
+    wake: Sequence[Callable[[Nanos], None]] = ()
     faults: Faults | None = None
 
     def boot(self) -> None:
         """Brings the drives up, from `BOOT` before t = 0 on."""
-        if self.power is not None:
-            self.power(-BOOT)
+        for wake in self.wake:
+            wake(-BOOT)
         self.carriage.start(-BOOT)
         self.master.boot(self._pump, -BOOT, 0)
         self.plant.start()

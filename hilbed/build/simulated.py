@@ -111,8 +111,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     )
 
     flush = [sensor.flush for sensor in sensors]
-    power = None if terminals is None else terminals.power
-    hands = Hands(Master(nodes, port, period), base, plant, carriage, flush, tick, period, power, faults)
+    wake = elsewhere.wakers(nodes, carriage, terminals)
+    hands = Hands(Master(nodes, port, period), base, plant, carriage, flush, tick, period, wake, faults)
     kinds = {"azimuth": 1} if sensors else {}
     return Bench(
         rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,

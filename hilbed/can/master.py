@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hilbed.can import cia402, configuration, emergency, nmt
+from hilbed.can import cia402, configuration, emergency, nmt, strangers
 from hilbed.can.cob import CONTROLLER_ID
 from hilbed.can.link import Link, Pump
 from hilbed.can.node import Node
@@ -42,12 +42,14 @@ class Master:
         shortest = min((node.table.heartbeat.controller for node in self._nodes), default=100)
         link.each_step.append(nmt.HeartbeatProducer(self._bus, CONTROLLER_ID, shortest * MILLISECOND).tick)
         for node in self._nodes:
-            link.send(nmt.command(nmt.RESET_NODE, node.id))
+            if node.kind != "real":  # else it has been woken, which takes its own time
+                link.send(nmt.command(nmt.RESET_NODE, node.id))
         for node in self._nodes:
             _await_boot_up(link, heard, node)
         for node in self._nodes:
             self._bring_up(link, heard, twins, node)
         link.pause(SETTLING)
+        strangers.refuse(link, heard, self._nodes)
         for node in self._nodes:
             _check_enabled(SdoClient(link, node.name, node.id), node)
         link.pause(ready - link.t)

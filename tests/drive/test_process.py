@@ -55,17 +55,22 @@ class Master:
                 return bytes(message.data)
         raise AssertionError(f"{identifier:03X} does not come")
 
+    def answer(self, service: int, index: int) -> bytes:
+        """Returns the answer to a request, whatever others have asked before."""
+        head = (service, index.to_bytes(2, "little"))
+        while (answer := self.hear(0x580 + self.node))[0] >> 5 != head[0] or answer[1:3] != head[1]:
+            assert answer[0] != 0x80, f"refused: {answer.hex()}"
+        return answer
+
     def write(self, index: int, value: int, size: int) -> None:
         code = {1: 0x2F, 2: 0x2B, 4: 0x23}[size]
         data = struct.pack("<BHB", code, index, 0) + value.to_bytes(size, "little", signed=value < 0)
         self.send(0x600 + self.node, data.ljust(8, b"\0"))
-        assert self.hear(0x580 + self.node)[0] == 0x60
+        self.answer(3, index)
 
     def read(self, index: int) -> int:
         self.send(0x600 + self.node, struct.pack("<BHBI", 0x40, index, 0, 0))
-        answer = self.hear(0x580 + self.node)
-        assert answer[0] & 0xE3 == 0x43
-        (value,) = struct.unpack("<i", answer[4:])
+        (value,) = struct.unpack("<i", self.answer(2, index)[4:])
         return int(value)
 
 
