@@ -198,7 +198,6 @@ def test_what_a_recorded_file_lacks_is_told_with_its_place(tmp_path: Path) -> No
         (("run", "/"), "/ is not a file"),
         (("run", "x" * 300), "File name too long"),
         (("check", "demo", "--set", "a.b=1"), "--set a.b=1: unknown key 'a'"),
-        (("run", "demo", "-i", "virtual"), "unrecognized arguments"),
         (("run", "demo", "--record", "some"), "invalid choice"),
         (("run", "demo", "--seed", "-1"), "seed"),
         (("run", "demo", "--set", "duration"), "give PATH=VALUE"),
