@@ -11,6 +11,7 @@ import pytest
 from hilbed.disturbances import DISTURBANCES
 from tests.bench import ran
 from tests.build.scenarios import small
+from tests.build.test_bus_faults import KINDS
 
 START = 0.5
 Signals = Mapping[str, np.ndarray]
@@ -84,7 +85,7 @@ EFFECTS = {
 
 
 def test_every_kind_is_looked_at() -> None:
-    assert set(EFFECTS) == set(DISTURBANCES)
+    assert set(EFFECTS) | KINDS == set(DISTURBANCES)
 
 
 @pytest.fixture(scope="module")
