@@ -103,7 +103,7 @@ def _check_existing(path: Path, force: bool) -> None:
         return
     if not force:
         raise ScenarioError(f"{path} exists; --force replaces the run in it, --out takes another folder")
-    if not found & {SCENARIO, VERDICT}:
+    if not found & {VERDICT, RESERVE}:  # one of them is there from the first moment of a run on
         raise ScenarioError(f"{path} does not hold a run, so --force does not replace it; give another --out")
 
 

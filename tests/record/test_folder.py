@@ -39,8 +39,12 @@ def test_an_existing_run_is_replaced_only_by_force_and_only_at_the_start(tmp_pat
 
 def test_force_removes_runs_and_nothing_else(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("years of work")
+    (tmp_path / "scenario.yaml").write_text("of the user's own")
     with pytest.raises(ScenarioError, match="does not hold a run"):
         RunFolder(tmp_path, force=True)
+    killed = RunFolder(tmp_path / "demo-0")
+    killed.start()
+    RunFolder(tmp_path / "demo-0", force=True).start()
     path = finished(tmp_path / "demo-1")
     (path / "notes.txt").write_text("mine")
     RunFolder(path, force=True).start()
