@@ -30,7 +30,7 @@ def busy(bitrate: int, exact: bool, subject: Subject) -> Iterator[Result]:
     """The same on a bus that is loaded by 80 to 100 % of its bit rate.
 
     exact: the bus is the simulated wire, which takes any load. On any other one the load is lessened until
-    every SYNC is answered: the highest one so reached is named, and need not be 80 %.
+    every SYNC is answered in time: the highest one so reached is named, and need not be 80 %.
     """
     names = synchronous(subject)
     if not names:
@@ -39,11 +39,11 @@ def busy(bitrate: int, exact: bool, subject: Subject) -> Iterator[Result]:
     before = _errors(subject)
     aim = LOAD
     done = rounds(subject, names, ROUNDS, aim * bitrate / _FILLER_BITS)
-    while not (exact or done.complete or aim < LEAST):
+    while not (exact or done.in_time or aim < LEAST):
         aim *= 0.6
         done = rounds(subject, names, ROUNDS, aim * bitrate / _FILLER_BITS)
     load = done.bits / (bitrate * seconds(done.length))
-    what = "load" if exact else "highest load with every answer"
+    what = "load" if exact else "highest load with answers in time"
     about = f"{what}, of {bitrate} bit/s; {done.refused} frames refused by the driver"
     yield told("load/reached", 0.8 <= load <= 1.0 or not exact, about, 100 * load, "%")
     yield from _answers("load", done)
@@ -58,8 +58,7 @@ def _errors(subject: Subject) -> int:
 def _answers(check: str, done: Rounds) -> Iterator[Result]:
     for name, times in done.answers.items():
         if len(times) < done.syncs:
-            lost = done.syncs - len(times)
-            yield told(f"{check}/{name}", False, f"{lost} of {done.syncs} SYNCs without an answer")
+            yield told(f"{check}/{name}", False, f"SYNC number {done.syncs} has no answer")
             continue
         mean = sum(times) / len(times) / MILLISECOND
         note = f"mean; {min(times) / MILLISECOND:.3f} to {max(times) / MILLISECOND:.3f} ms"
