@@ -6,10 +6,9 @@ from collections.abc import Callable
 from math import nan
 from typing import Any
 
-from hilbed.can.cia402 import ENABLE_OPERATION
 from hilbed.can.codec import limits
 from hilbed.can.node import Node
-from hilbed.types import DriveSignals, Frame, Nanos
+from hilbed.types import DriveSignals, Nanos
 
 STATUS, VELOCITY, POSITION, CURRENT, UNUSED = range(5)
 _SLOTS = {
@@ -27,7 +26,7 @@ Route = tuple["Axis", Callable[[bytes], tuple[Any, ...]], tuple[int, ...], bool]
 
 
 class Axis:
-    """State of one drive: raw `values` by slot, when it was heard, what it is told to do.
+    """State of one drive: raw `values` by slot, when it was heard, its target (`raw`, `speed_ref`).
 
     state: bits of the statusword that tell states apart; fresh: number of the SYNC that the last position
     answered; position: raw, at the last complete set; heard, alive: when its last PDO, its last heartbeat
@@ -39,18 +38,15 @@ class Axis:
         "_actual",
         "_amperes",
         "_limits",
-        "_pack",
-        "_rpdo",
         "_velocity",
-        "_word_first",
         "alive",
-        "controlword",
         "fresh",
         "heard",
         "late",
         "node",
         "position",
         "radians_per_count",
+        "raw",
         "silent",
         "speed_ref",
         "state",
@@ -69,36 +65,32 @@ class Axis:
         self.silent = ""
         self.late = 0
         self.speed_ref = 0.0
-        self.controlword = ENABLE_OPERATION
+        self.raw = 0
         self.radians_per_count = 1.0 / node.counts_per_radian
         self._velocity = node.velocity_per_radian
         self._actual = node.actual_per_radian
         self._amperes = node.amperes
-        self._rpdo = table.pdos["rpdo1"].cob_id + node.id
-        self._limits = limits(table.objects["target_velocity"].type)
-        codec = table.codec("rpdo1")
-        self._pack = codec.pack
-        self._word_first = codec.names[0] == "controlword"
+        self._limits = limits(table.objects["target_velocity"].parts(node.axis)[0][1])
 
     def routes(self) -> dict[int, Route]:
         """Returns where each of the drive's TPDOs goes, by identifier."""
         routes: dict[int, Route] = {}
         for name, pdo in self.node.table.pdos.items():
             if name[0] == "t":
-                codec = self.node.table.codec(name)
+                codec = self.node.table.codec(name, self.node.axis)
                 slots = tuple(_SLOTS.get(word, UNUSED) for word in codec.names)
-                routes[pdo.cob_id + self.node.id] = self, codec.unpack, slots, POSITION in slots
+                if codec.names:
+                    routes[pdo.cob_id + self.node.id] = self, codec.unpack, slots, POSITION in slots
         return routes
 
-    def target(self, speed: float) -> Frame:
-        """Returns the RPDO that asks for a speed (rad/s at the wheel), limited to what the object holds."""
+    def ask(self, speed: float) -> None:
+        """Makes a speed (rad/s at the wheel) the target, limited to what the object holds."""
         low, high = self._limits
         raw = round(speed * self._velocity)
         if not low <= raw <= high:
             raw = low if raw < low else high
+        self.raw = raw
         self.speed_ref = speed
-        word = self.controlword
-        return Frame(self._rpdo, self._pack(word, raw) if self._word_first else self._pack(raw, word))
 
     def turned(self) -> float:
         """Returns the wheel's turn (rad) since the last complete set, across the wrap of 32 bits."""

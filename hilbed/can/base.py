@@ -16,8 +16,8 @@ from hilbed.can.axis import STATE_BITS, STATUS, Axis, Route
 from hilbed.can.cob import CONTROLLER_ID, SYNC_FRAME
 from hilbed.can.ears import Ears
 from hilbed.can.node import Node
-from hilbed.can.sdo import download_frame
 from hilbed.can.specs import BusSpec
+from hilbed.can.station import stations
 from hilbed.clock import MILLISECOND, nanos, seconds
 from hilbed.ports import Bus, Robot
 from hilbed.types import BusError, Command, Diverged, Nanos, Odometry
@@ -39,9 +39,11 @@ class CanBase:
         self._bus = bus
         self._axes = tuple(map(Axis, nodes))
         self.ears = Ears(self._axes)
-        self._routes: dict[int, Route] = {}
+        self._stations = stations(self._axes)
+        self._routes: dict[int, tuple[Route, ...]] = {}
         for axis in self._axes:
-            self._routes |= axis.routes()
+            for identifier, route in axis.routes().items():
+                self._routes[identifier] = (*self._routes.get(identifier, ()), route)
         shortest = min((axis.node.table.heartbeat.controller for axis in self._axes), default=100)
         self._alive = nmt.HeartbeatProducer(bus, CONTROLLER_ID, shortest * MILLISECOND)
         self._patience = nanos(spec.silent_after)
@@ -61,24 +63,24 @@ class CanBase:
         routes, ears = self._routes, self.ears
         for received in self._bus.recv(t):
             at, (identifier, data, extended, remote) = received
-            route = routes.get(identifier)
-            if route is None or extended or remote:
+            known = routes.get(identifier)
+            if known is None or extended or remote:
                 ears.hear(received)
                 continue
-            axis, unpack, slots, positioned = route
-            try:
-                raw = unpack(data)
-            except struct.error:
-                ears.ignored += 1
-                continue
-            values = axis.values
-            for slot, value in zip(slots, raw):  # noqa: B905  (as long as each other by construction)
-                values[slot] = value
-            axis.heard = at
-            if positioned:
-                axis.fresh = self._syncs
-            if values[STATUS] & STATE_BITS != axis.state:
-                ears.new_state(at, axis)
+            for axis, unpack, slots, positioned in known:
+                try:
+                    raw = unpack(data)
+                except struct.error:
+                    ears.ignored += 1
+                    break
+                values = axis.values
+                for slot, value in zip(slots, raw):  # noqa: B905  (as long as each other by construction)
+                    values[slot] = value
+                axis.heard = at
+                if positioned:
+                    axis.fresh = self._syncs
+                if values[STATUS] & STATE_BITS != axis.state:
+                    ears.new_state(at, axis)
         self._watch(t)
         return self._odometry(t)
 
@@ -94,7 +96,10 @@ class CanBase:
         self._sync, self._sync_before = t, self._sync
         self._syncs += 1
         for axis, speed in zip(self._axes, self._robot.wheel_speeds(command), strict=True):
-            send(t, axis.target(speed))
+            axis.ask(speed)
+        for station in self._stations:
+            for frame in station.orders():
+                send(t, frame)
         self._alive.tick(t)
 
     def stop(self, t: Nanos) -> None:
@@ -102,12 +107,9 @@ class CanBase:
 
         By SDO, which acts on arrival; and by PDO, so that the next SYNC finds no older order to go on.
         """
-        for axis in self._axes:
-            axis.controlword = cia402.QUICK_STOP
-            entry = axis.node.table.objects["controlword"]
-            word = cia402.QUICK_STOP.to_bytes(2, "little")
-            self._bus.send(t, download_frame(axis.node.id, entry.index, entry.sub, word))
-            self._bus.send(t, axis.target(0.0))
+        for station in self._stations:
+            for frame in station.stop():
+                self._bus.send(t, frame)
 
     @property
     def faulted(self) -> tuple[str, ...]:
