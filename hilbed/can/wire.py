@@ -66,7 +66,7 @@ class Wire:
         self._hearers: dict[int, tuple[Listener, ...]] = {}  # by sender's number and identifier; made lazily
         self._ready: list[Queued] = []
         self._waiting: list[tuple[Nanos, Queued]] = []  # queued ahead of time
-        self._posted: deque[tuple[Frame, Port]] = deque()
+        self._posted: deque[Callable[[], object]] = deque()
         self._flight: _Flight | None = None
         self._free: Nanos = _LONG_AGO
         self._due: Nanos = _NEVER  # nothing can end before
@@ -120,17 +120,16 @@ class Wire:
         """Forgets who hears what: a node has come or gone, or has changed its filter."""
         self._hearers.clear()
 
-    def post(self, frame: Frame, sender: Port) -> None:
-        """Queues a frame at the next `advance`; may be called from any thread."""
-        frame_bits(frame)
-        self._posted.append((frame, sender))
+    def later(self, act: Callable[[], object]) -> None:
+        """Has something done at the next `advance`; may be called from any thread."""
+        self._posted.append(act)
         self._due = _LONG_AGO
 
     def advance(self, until: Nanos) -> None:
         """Runs everything that completes by `until`."""
         if until >= self._due:
             while self._posted:
-                self.queue(self.now, *self._posted.popleft())
+                self._posted.popleft()()
             while self.step(until):
                 pass
         elif until > self.now:  # most of the time nothing is under way
@@ -165,6 +164,23 @@ class Wire:
     def pending(self) -> bool:
         """Whether frames are queued or on the bus."""
         return bool(self._ready or self._waiting or self._posted or self._flight)
+
+    @property
+    def silent(self) -> bool:
+        """Whether nothing will ever end on it unless somebody joins or sends.
+
+        Nothing is queued, or only by a node that is alone.
+        """
+        if self._flight is not None or self._waiting or self._posted:
+            return False
+        if not self._ready:
+            return True
+        return self._on_transfer is None and self._trouble.alone([self._ready[0][5]])
+
+    @property
+    def due(self) -> Nanos:
+        """Before when nothing can end."""
+        return self._due
 
     def statistics(self) -> Statistics:
         """Returns the totals up to now."""
@@ -204,11 +220,18 @@ class Wire:
             self._owners[key] = None
             self._shared = self._odd = True
 
-    def withdraw(self, port: Port) -> int:
-        """Takes back what a node has queued, but for what is on the bus; returns how much that was."""
+    def withdraw(self, port: Port, frame: Frame | None = None) -> int:
+        """Takes back what a node has queued, but for what is on the bus; returns how much that was.
+
+        frame: only this very one, not others that are equal.
+        """
+
+        def stays(item: Queued) -> bool:
+            return item[5] is not port or not (frame is None or item[3] is frame)
+
         before = len(self._ready) + len(self._waiting)
-        self._ready = [item for item in self._ready if item[5] is not port]
-        self._waiting = [entry for entry in self._waiting if entry[1][5] is not port]
+        self._ready = [item for item in self._ready if stays(item)]
+        self._waiting = [entry for entry in self._waiting if stays(entry[1])]
         heapify(self._ready)
         heapify(self._waiting)
         return before - len(self._ready) - len(self._waiting)

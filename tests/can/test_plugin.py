@@ -105,9 +105,7 @@ def test_a_bus_that_is_shut_down_refuses() -> None:
         closed.recv(0)
 
 
-@pytest.mark.parametrize(
-    "options", [{"bitrate": 7}, {"bitrate": "fast"}, {"fd": True}, {"receive_own_messages": True}]
-)
+@pytest.mark.parametrize("options", [{"bitrate": 7}, {"bitrate": "fast"}, {"fd": True}])
 def test_bad_options_are_errors_of_python_can(options: dict[str, Any]) -> None:
     with pytest.raises((can.CanInitializationError, ValueError)):
         bus(**options)
