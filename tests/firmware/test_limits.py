@@ -44,6 +44,17 @@ def test_a_lower_limit_acts_at_once() -> None:
     assert wire.drive.speed_ref == pytest.approx(1.0, abs=1e-4)
 
 
+def test_an_encoder_of_more_counts_lowers_it_too() -> None:
+    """607F is in counts: at twice as many a turn it is half as fast."""
+    wire = enabled()
+    wire.command(0x0F, 210_000)
+    wire.run(1)
+    wire.node.sdo[0x2001].raw = 132_000
+    assert wire.drive.speed_ref == pytest.approx(GREATEST / 2)
+    wire.run(1)
+    assert wire.drive.speed_ref == pytest.approx(GREATEST / 2)
+
+
 def test_a_wheel_that_is_pushed_faster_is_taken_over_at_the_greatest_speed() -> None:
     wire = enabled()
     wire.command(0x00)
@@ -75,6 +86,18 @@ def test_a_wheel_that_is_jammed_draws_no_more_than_the_limit(limit: float) -> No
     wire.command(0x0F, FIVE)
     wire.run(500)
     assert wire.duty / 32767 * 24.0 / 0.583 == pytest.approx(limit, abs=24.0 / 0.583 / 32767)
+    assert wire.node.sdo[0x6041].raw & 0x0800
+
+
+@pytest.mark.parametrize("target", [FIVE, -FIVE])
+def test_the_whole_supply_is_a_duty_of_32767(target: int) -> None:
+    wire = enabled()
+    wire.supply = 24  # 6 V, which the limit of 10 A leaves to the motor
+    wire.node.sdo[0x2013][3].raw = 0.0  # no undervoltage
+    wire.node.sdo[0x2013][1].raw = 15.0
+    wire.command(0x0F, target)
+    wire.run(1000)
+    assert wire.duty == math.copysign(32767, target)
 
 
 def test_a_drive_that_lost_its_encoder_turns_no_faster_than_the_limit_of_a_stalled_one_allows() -> None:

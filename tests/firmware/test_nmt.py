@@ -110,6 +110,29 @@ def test_reset_node_forgets_everything() -> None:
     assert wire.node.sdo[0x60FF].raw == 0
 
 
+def test_reset_node_forgets_a_fault_and_all_tuning() -> None:
+    wire = moving()
+    wire.node.sdo[0x2013][2].raw = 1.0
+    wire.command(0x18F, SPEED)  # halt, and the bit that resets faults stays up
+    wire.current = 1500
+    wire.run(1)
+    assert wire.state() == "FAULT"
+    wire.node.nmt.send_command(129)
+    wire.run(1)
+    assert wire.node.sdo[0x1001].raw == 0
+    assert wire.state() == "SWITCH ON DISABLED"
+    wire.node.nmt.state = "OPERATIONAL"
+    wire.node.sdo[0x6060].raw = 9
+    for word in (0x06, 0x07, 0x0F):
+        wire.command(word, SPEED)
+    wire.run(10)  # at 1.5 A, which trips nothing any more
+    assert wire.drive.speed_ref > 4
+    wire.current = 30_000
+    wire.run(1)
+    wire.command(0x80)
+    assert wire.state() == "SWITCH ON DISABLED"
+
+
 def test_reset_communication_keeps_the_application() -> None:
     wire = powered()
     wire.node.sdo[0x1017].raw = 10
