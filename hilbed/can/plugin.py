@@ -130,6 +130,8 @@ class HilbedBus(BusABC):
         """Leaves the channel; may be called again."""
         if not self._is_shutdown:
             self.stop_all_periodic_tasks()
+            for task in self._tasks:  # python-can forgets those that were stopped once
+                task.stop()
             channels.leave(self._name, self._shared, self._port)
         super().shutdown()
 
