@@ -10,25 +10,24 @@ import time
 from collections.abc import Callable
 from typing import Literal, NamedTuple, Protocol
 
-from hilbed.clock import seconds
+from hilbed.clock import nanos, seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.ledger import Ledger
 from hilbed.spec import Positive, Spec
 from hilbed.types import HilbedError, Nanos
-
-MOST_BEHIND: Nanos = 1_000_000_000
-"""A bench that is this late has lost real time for good."""
 
 
 class RealtimeSpec(Spec):
     """Pace of a run: a second of the wall clock for each simulated one.
 
     overrun: of a cycle that begins late by more than `tolerance` (s, half a period by default): skip (its
-    commands are not sent, the schedule is kept) or fail (the run).
+    commands are not sent, the schedule is kept) or fail (the run); give_up: s, by which a run that begins a
+    cycle so late has lost real time for good and fails.
     """
 
     overrun: Literal["skip", "fail"] = "skip"
     tolerance: Positive | None = None
+    give_up: Positive = 1.0
 
 
 class Overrun(HilbedError):
@@ -60,8 +59,8 @@ class Pacer:
         self.ledger = Ledger()
         self.cost = cost or Cost()
         self.period = period
-        self._fails = spec.overrun == "fail"
-        self._tolerance = period // 2 if spec.tolerance is None else round(spec.tolerance * 1e9)
+        self._tolerance = period // 2 if spec.tolerance is None else nanos(spec.tolerance)
+        self._most = self._tolerance if spec.overrun == "fail" else nanos(spec.give_up)
         self._wall = wall or Time()
         self._zero: Nanos | None = None
 
@@ -84,7 +83,7 @@ class Pacer:
         late = self.wait(t)
         missed = late > self._tolerance
         self.ledger.note(t, late, missed)
-        if missed and (self._fails or late > MOST_BEHIND):
+        if late > self._most:
             raise Overrun(f"real time lost: the cycle began {seconds(late):.4f} s late")
         return not missed
 

@@ -55,7 +55,7 @@ def test_over_another_bus_the_run_is_the_same_and_every_frame_is_on_it(tmp_path:
 
 def test_in_real_time_the_run_is_the_same_where_no_deadline_is_missed() -> None:
     simulated = run(SHORT)
-    paced = run([*SHORT, "realtime.tolerance=10"])
+    paced = run([*SHORT, "realtime={tolerance: 100, give_up: 100}"])
     assert hashes(paced) == hashes(simulated)
     part = paced.verdict["realtime"]
     assert (part["cycles"], part["missed_deadlines"], sum(part["histogram"]["cycles"])) == (31, 0, 31)
@@ -73,7 +73,11 @@ def test_a_deadline_that_nobody_could_meet_fails_the_run_if_the_scenario_says_so
 
 def test_missed_deadlines_are_a_criterion_and_their_commands_are_not_sent() -> None:
     """Every deadline is missed, so the drives are never told to move, only to stop."""
-    settings = ["duration=0.3", "criteria={missed_deadlines: {max: 0}}", "realtime.tolerance=1.0e-9"]
+    settings = [
+        "duration=0.3",
+        "criteria={missed_deadlines: {max: 0}}",
+        "realtime={tolerance: 1.0e-9, give_up: 100}",
+    ]
     with can.Bus(interface="virtual", channel="joined") as witness:
         outcome = run([*settings, *JOINED[-2:]])
         heard = frames_of(witness)
@@ -150,7 +154,7 @@ class Twin:
         self.bus.shutdown()
 
 
-@pytest.mark.parametrize("more", [[], ["realtime={}"]])
+@pytest.mark.parametrize("more", [[], ["realtime.give_up=100"]])
 def test_a_node_that_should_be_simulated_answers_on_the_bus(
     more: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

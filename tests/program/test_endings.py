@@ -51,7 +51,7 @@ def test_a_full_disk_ends_the_run_with_3_and_its_name_and_keeps_the_logs(small_d
         last = [message.log_time for _, _, message in make_reader(stream).iter_messages()][-1]
     assert last / 1e9 > told["sim_time"]
     assert {entry.name for entry in (small_disk / "run").iterdir()} <= {
-        "scenario.yaml", "can.log", "log.mcap", "verdict.json",
+        "scenario.yaml", "can.log", "bus.dbc", "log.mcap", "verdict.json",
     }  # fmt: skip
 
 
