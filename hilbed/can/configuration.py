@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from hilbed.can.cob import CONTROLLER_ID
 from hilbed.can.codec import bit_length
@@ -19,9 +19,9 @@ Step = tuple[Entry, float]
 """An object and the raw value that is written to it."""
 
 
-def steps(node: Node, period: Nanos) -> Iterator[Step]:
-    """Yields everything that is written to a drive before it is started, in order."""
-    table = node.table
+def steps(axes: Sequence[Node], period: Nanos) -> Iterator[Step]:
+    """Yields everything that is written to a node before it is started, in order; axes: those in it."""
+    node, table = axes[0], axes[0].table
     yield from _heartbeat(table, period)
     for write in table.writes:
         yield write, write.value
@@ -29,15 +29,21 @@ def steps(node: Node, period: Nanos) -> Iterator[Step]:
         yield setting, setting.raw(seconds(period))
     if table.interpolates:
         yield from _interpolation(period)
-    for key, value in node.settings.items():
-        setting = table.settings[key]
-        yield setting, setting.raw(value)
-    if node.max_speed is not None and "max_velocity" in table.objects:
-        yield table.objects["max_velocity"], abs(node.max_speed * node.velocity_per_radian)
+    for axis in axes:
+        yield from _settings(axis)
     for name, pdo in table.pdos.items():
         yield from _pdo(node, name, pdo)
-    yield table.objects["mode"], table.modes[node.mode]
-    yield table.objects["target_velocity"], 0
+    for axis in axes:
+        yield axis.of("mode"), table.modes[axis.mode]
+        yield axis.of("target_velocity"), 0
+
+
+def _settings(axis: Node) -> Iterator[Step]:
+    for key, value in axis.settings.items():
+        setting = axis.table.settings[key]
+        yield setting.of(axis.axis), setting.raw(value)
+    if axis.max_speed is not None and "max_velocity" in axis.table.objects:
+        yield axis.of("max_velocity"), abs(axis.max_speed * axis.velocity_per_radian)
 
 
 def _heartbeat(table: DriveTable, period: Nanos) -> Iterator[Step]:

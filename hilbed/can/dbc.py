@@ -17,7 +17,7 @@ from cantools.database.namedsignalvalue import NamedSignalValue
 from hilbed.can import nmt
 from hilbed.can.cob import CONTROLLER_ID, EMERGENCY, HEARTBEAT, NMT, SDO_ANSWER, SDO_REQUEST, SYNC
 from hilbed.can.codec import bit_length
-from hilbed.can.node import Node
+from hilbed.can.node import Node, by_number
 from hilbed.can.objects import MappedValue
 
 CONTROLLER = "controller"
@@ -37,19 +37,11 @@ def database(nodes: Sequence[Node]) -> Database:
     return Database(list(_messages(nodes)), [Member(CONTROLLER, "the bench"), *members])
 
 
-def stations(nodes: Sequence[Node]) -> dict[int, list[Node]]:
-    """Returns the drives by node number, in the order given: several axes may live in one node."""
-    found: dict[int, list[Node]] = {}
-    for node in nodes:
-        found.setdefault(node.id, []).append(node)
-    return found
-
-
 def _messages(nodes: Sequence[Node]) -> Iterator[Message]:
     yield _message(NMT, "nmt", [_signal("command", 0, "u8", _NMT), _signal("node", 8, "u8")], CONTROLLER)
     yield _message(SYNC, "sync", [], CONTROLLER)
     yield _heartbeat(CONTROLLER_ID, CONTROLLER)
-    for number, axes in stations(nodes).items():
+    for number, axes in by_number(nodes).items():
         name = "_".join(axis.name for axis in axes)
         for pdo in axes[0].table.pdos:
             yield _pdo(axes, pdo, f"{name}_{pdo}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hilbed.can.frame_length import INTERFRAME_BITS
-from hilbed.can.node import Node
+from hilbed.can.node import Node, by_number
 
 
 def worst_bits(size: int, extended: bool = False) -> int:
@@ -27,13 +27,14 @@ def periodic_load(nodes: Sequence[Node], period: float, bitrate: int) -> float:
     bits = worst_bits(0) / period
     if nodes:
         bits += worst_bits(1) * 1e3 / min(node.table.heartbeat.controller for node in nodes)
-    return (bits + sum(_node_bits(node, period) for node in nodes)) / bitrate
+    return (bits + sum(_node_bits(axes[0], period) for axes in by_number(nodes).values())) / bitrate
 
 
 def _node_bits(node: Node, period: float) -> float:
     """Returns bits/s of what is sent to and by a drive."""
     table = node.table
-    bits = worst_bits(1) * 1e3 / table.heartbeat.drive + worst_bits(table.codec("rpdo1").size) / period
+    bits = worst_bits(1) * 1e3 / table.heartbeat.drive
+    bits += sum(worst_bits(table.codec(name).size) for name in table.receives) / period
     for name, pdo in table.pdos.items():
         if name[0] == "t":
             synchronous = pdo.transmission <= 240

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from hilbed.can import cia402, configuration, emergency, nmt, strangers
 from hilbed.can.cob import CONTROLLER_ID
 from hilbed.can.link import Link, Pump
-from hilbed.can.node import Node
+from hilbed.can.node import Node, by_number
 from hilbed.can.sdo import SdoClient
 from hilbed.can.twins import Twins
 from hilbed.clock import MILLISECOND
@@ -41,13 +41,14 @@ class Master:
         link.listeners += [heard.hear, twins.hear]
         shortest = min((node.table.heartbeat.controller for node in self._nodes), default=100)
         link.each_step.append(nmt.HeartbeatProducer(self._bus, CONTROLLER_ID, shortest * MILLISECOND).tick)
-        for node in self._nodes:
-            if node.kind != "real":  # else it has been woken, which takes its own time
-                link.send(nmt.command(nmt.RESET_NODE, node.id))
-        for node in self._nodes:
-            _await_boot_up(link, heard, node)
-        for node in self._nodes:
-            self._bring_up(link, heard, twins, node)
+        groups = [*by_number(self._nodes).values()]
+        for axes in groups:
+            if axes[0].kind != "real":  # else it has been woken, which takes its own time
+                link.send(nmt.command(nmt.RESET_NODE, axes[0].id))
+        for axes in groups:
+            _await_boot_up(link, heard, axes[0])
+        for axes in groups:
+            self._bring_up(link, heard, twins, axes)
         link.pause(SETTLING)
         strangers.refuse(link, heard, self._nodes)
         for node in self._nodes:
@@ -55,20 +56,25 @@ class Master:
         link.pause(ready - link.t)
         return link.t
 
-    def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, twins: Twins, node: Node) -> None:
-        """Identifies, configures, starts and enables a node."""
+    def _bring_up(
+        self, link: Link, heard: nmt.HeartbeatConsumer, twins: Twins, axes: Sequence[Node]
+    ) -> None:
+        """Identifies, configures, starts and enables a node, all its axes at once."""
+        node = axes[0]
         sdo = SdoClient(link, node.name, node.id)
         _identify(sdo, node)  # by then the boot-up of power-on and that of the reset have come
         twins.watch(node)
         before = sdo.asked
-        for entry, value in configuration.steps(node, self._period):
+        for entry, value in configuration.steps(axes, self._period):
             sdo.write(entry.index, entry.sub, entry.type, value)
-        _await_mode(link, sdo, node)
+        for axis in axes:
+            _await_mode(link, sdo, axis)
         link.send(nmt.command(nmt.START, node.id))
         if not link.until(lambda: heard.states.get(node.id) == nmt.OPERATIONAL, STATE_TIMEOUT):
             state = nmt.STATE_NAMES.get(heard.states.get(node.id, -1), "silent")
             raise BusError(f"{node}: told to start, but its heartbeat (1017) says {state}")
-        _enable(link, sdo, node)
+        for axis in axes:
+            _enable(link, sdo, axis)
         twins.check(node, sdo.asked - before)
 
 
@@ -97,10 +103,10 @@ def _identify(sdo: SdoClient, node: Node) -> None:
 
 def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
     """Waits until the drive shows the mode that it has been given."""
-    entry = node.table.objects.get("mode_display")
     wanted = node.table.modes[node.mode]
-    if entry is None:
+    if "mode_display" not in node.table.objects:
         return
+    entry = node.of("mode_display")
     deadline = link.t + STATE_TIMEOUT
     while (shown := sdo.read(entry.index, entry.sub, entry.type)) != wanted:
         if link.t >= deadline:
@@ -110,7 +116,7 @@ def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
 
 def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
     """Leads the drive to operation enabled, through a fault reset if need be."""
-    control = node.table.objects["controlword"]
+    control = node.of("controlword")
     deadline = link.t + STATE_TIMEOUT
     while (state := cia402.state_of(_statusword(sdo, node))) != cia402.ENABLED and link.t < deadline:
         word = cia402.towards_enabled(state)
@@ -123,8 +129,8 @@ def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
 
 
 def _statusword(sdo: SdoClient, node: Node) -> int:
-    entry = node.table.objects["statusword"]
-    return sdo.read(entry.index, entry.sub, entry.type)
+    entry = node.of("statusword")
+    return node.part("statusword", sdo.read(entry.index, entry.sub, entry.type))
 
 
 def _check_enabled(sdo: SdoClient, node: Node) -> None:
@@ -136,8 +142,8 @@ def _check_enabled(sdo: SdoClient, node: Node) -> None:
 
 def _why(sdo: SdoClient, node: Node) -> str:
     """Returns what the drive says about its fault, if it can say so."""
-    entry = node.table.objects.get("error_code")
-    if entry is None:
+    if "error_code" not in node.table.objects:
         return ""
-    code = sdo.read(entry.index, entry.sub, entry.type)
+    entry = node.of("error_code")
+    code = node.part("error_code", sdo.read(entry.index, entry.sub, entry.type))
     return f", error code {code:#06x}: {emergency.meaning(code)}" if code else ""

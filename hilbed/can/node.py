@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from hilbed.can.drive_table import DriveTable
+from hilbed.can.objects import Entry
 
 Kind: TypeAlias = Literal["simulated", "ecu", "real"]
 """Where a drive is: all of it here; its firmware elsewhere; all of it elsewhere."""
@@ -54,6 +55,14 @@ class Node:
     def amperes(self) -> float:
         """A a number in the object of the current, negative where the drive is mounted mirrored."""
         return self.table.units.amperes(self.axis)
+
+    def of(self, word: str) -> Entry:
+        """Returns the entry that holds an object of this axis."""
+        return self.table.objects[word].of(self.axis)
+
+    def part(self, word: str, value: int) -> int:
+        """Returns what of a value that was read from `of(word)` is this axis's."""
+        return self.table.objects[word].part(self.axis, value)
 
     def __str__(self) -> str:
         axis = f", axis {self.axis}" if self.table.axes > 1 else ""

@@ -64,7 +64,7 @@ class Write(Entry):
     value: Finite
 
 
-class Setting(Entry):
+class Setting(Object):
     """Where a number or a word of the scenario goes: number × scale, or what the word stands for."""
 
     scale: Finite = 1.0
