@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -67,3 +67,11 @@ class Node:
     def __str__(self) -> str:
         axis = f", axis {self.axis}" if self.table.axes > 1 else ""
         return f"drive {self.name} (node {self.id}{axis})"
+
+
+def by_number(nodes: Iterable[Node]) -> dict[int, list[Node]]:
+    """Returns drives by the number of their node, in the order given: several axes may be in one node."""
+    found: dict[int, list[Node]] = {}
+    for node in nodes:
+        found.setdefault(node.id, []).append(node)
+    return found
