@@ -197,7 +197,10 @@ def _recorded(
 
 
 def _disturbed(
-    disturbances: list[DisturbanceSpec], robot: RobotSpec, sensors: Mapping[str, SensorSpec]
+    disturbances: list[DisturbanceSpec],
+    robot: RobotSpec,
+    sensors: Mapping[str, SensorSpec],
+    nodes: Mapping[str, NodeSpec],
 ) -> Problems:
     drives = ROBOTS[robot.kind].drives
     for k, disturbance in enumerate(disturbances):
@@ -205,6 +208,9 @@ def _disturbed(
         drive = getattr(disturbance, "drive", None)
         if drive is not None and drive not in drives:
             text = f"{place}.drive: the robot has no drive {drive!r}{nearest(drive, drives)}"
+            yield Problem(("disturbances", k, "drive"), text)
+        if disturbance.kind == "load_torque" and drive in [n for n, s in nodes.items() if s.kind == "real"]:
+            text = f"{place}.drive: {drive} is real, and nothing here can load its shaft"
             yield Problem(("disturbances", k, "drive"), text)
         if disturbance.kind in ("camera_loss", "spurious_azimuths") and not sensors:
             yield Problem(

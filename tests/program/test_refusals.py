@@ -88,7 +88,12 @@ def test_the_good_one_is_good(tmp_path: Path) -> None:
             "there is no file nowhere.urdf",
         ),
         ("estimator", "robot: {kind: diffdrive, urdf: ../../etc/passwd}\nestimator", "leaves"),
-        ("estimator", "nodes: {left: ecu}\nestimator", "'ecu' comes with the real bus"),
+        ("estimator", "nodes: {left: guessed}\nestimator", "nodes.left.kind: "),
+        (
+            "estimator",
+            "nodes: {left: real}\ndisturbances: [{kind: load_torque, drive: left, size: 1}]\nestimator",
+            "mine.yaml:11: disturbances.0.drive: left is real",
+        ),
         ("estimator", "nodes: {front: simulated}\nestimator", "the robot has no drive 'front'"),
         ("estimator", "bus: {kind: socketcan}\nestimator", "bus.kind: 'socketcan'"),
         ("estimator", "bus: {bitrate: 123}\nestimator", "no bit rate of CiA"),
