@@ -56,9 +56,7 @@ class Master:
         link.pause(ready - link.t)
         return link.t
 
-    def _bring_up(
-        self, link: Link, heard: nmt.HeartbeatConsumer, twins: Twins, axes: Sequence[Node]
-    ) -> None:
+    def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, twins: Twins, axes: Sequence[Node]) -> None:
         """Identifies, configures, starts and enables a node, all its axes at once."""
         node = axes[0]
         sdo = SdoClient(link, node.name, node.id)
