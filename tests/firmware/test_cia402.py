@@ -245,6 +245,26 @@ def test_overcurrent_opens_the_chopper_in_the_same_tick(current: int) -> None:
     assert wire.node.sdo[0x1001].raw == 0x03
 
 
+def test_overcurrent_is_no_undervoltage_where_the_supply_just_does() -> None:
+    wire = moving()
+    wire.supply = 48  # 12 V, the least
+    wire.run(10)
+    assert wire.state() == "OPERATION ENABLED"
+    wire.current = 20_100
+    wire.run(1)
+    assert [e.code for e in wire.node.emcy.log] == [0x2310]
+
+
+def test_a_sag_does_not_outlive_the_operation_that_it_was_in() -> None:
+    wire = moving()
+    wire.supply = 40
+    wire.run(4)
+    for word in (0x00, 0x06, 0x07, 0x0F):
+        wire.command(word)
+    wire.run(4)
+    assert wire.state() == "OPERATION ENABLED"
+
+
 def test_short_sags_do_not_add_up() -> None:
     wire = moving()
     for _ in range(10):

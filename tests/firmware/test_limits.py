@@ -87,6 +87,8 @@ def test_a_wheel_that_is_jammed_draws_no_more_than_the_limit(limit: float) -> No
     wire.run(500)
     assert wire.duty / 32767 * 24.0 / 0.583 == pytest.approx(limit, abs=24.0 / 0.583 / 32767)
     assert wire.node.sdo[0x6041].raw & 0x0800
+    wire.command(0x00, 0)
+    assert not wire.node.sdo[0x6041].raw & 0x0800
 
 
 @pytest.mark.parametrize("target", [FIVE, -FIVE])

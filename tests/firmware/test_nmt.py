@@ -193,6 +193,7 @@ def test_a_lost_heartbeat_is_a_quick_stop() -> None:
     wire.run(150)
     assert wire.state() == "SWITCH ON DISABLED"
     assert not wire.drive.bridge_enabled
+    assert wire.node.sdo[0x1001].raw == 0x11  # at rest it is still lost
     beat(wire)
     wire.run(1)
     assert codes(wire) == [0x8130, 0]
