@@ -31,7 +31,7 @@ class Axis:
     state: bits of the statusword that tell states apart; fresh: number of the SYNC that the last position
     answered; position: raw, at the last complete set; heard, alive: when its last PDO, its last heartbeat
     came; silent: since when it is and of what, empty if not; late: how often a SYNC was not answered within
-    its cycle.
+    its cycle; misfits: since when, and how long (bytes), each PDO has come that is not as it was mapped.
     """
 
     __slots__ = (
@@ -43,6 +43,7 @@ class Axis:
         "fresh",
         "heard",
         "late",
+        "misfits",
         "node",
         "position",
         "radians_per_count",
@@ -64,6 +65,7 @@ class Axis:
         self.alive: Nanos = 0
         self.silent = ""
         self.late = 0
+        self.misfits: dict[int, tuple[Nanos, int]] = {}
         self.speed_ref = 0.0
         self.raw = 0
         self.radians_per_count = 1.0 / node.counts_per_radian

@@ -72,7 +72,10 @@ class CanBase:
                     raw = unpack(data)
                 except struct.error:
                     ears.ignored += 1
+                    axis.misfits.setdefault(identifier, (at, len(data)))
                     break
+                if axis.misfits:
+                    axis.misfits.pop(identifier, None)
                 values = axis.values
                 for slot, value in zip(slots, raw):  # noqa: B905  (as long as each other by construction)
                     values[slot] = value
@@ -174,11 +177,15 @@ class CanBase:
                 self._on_silence(t)
 
     def _silence(self, t: Nanos, axis: Axis, before: Nanos) -> str:
-        """Returns since when a drive sends no PDOs, or no heartbeats; empty if it does."""
+        """Returns since when a drive sends no PDOs, or no heartbeats, or others; empty if all is well."""
         if axis.heard <= before and t - axis.heard > self._patience:
             return f"silent since {seconds(axis.heard):g} s"
         if t - axis.alive > 3 * MILLISECOND * axis.node.table.heartbeat.drive:
             return f"without a heartbeat since {seconds(axis.alive):g} s"
+        for identifier, (since, size) in axis.misfits.items():
+            if t - since > self._patience:
+                pdo = f"PDO {identifier:03X} with {size} bytes, not as mapped,"
+                return f"sending {pdo} since {seconds(since):g} s"
         return ""
 
     def _hold(self, t: Nanos) -> None:
