@@ -10,6 +10,7 @@ import argparse
 import signal
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack
 from typing import NoReturn
 
 from firmware_sim.process import BusLost, NoBus, open_bus, serve
@@ -30,9 +31,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     name = f"firmware node {options.node}"
     try:
-        with open_bus(options.interface, options.channel, options.bitrate, options.node) as bus:
+        with ExitStack() as buses:
+            enter = buses.enter_context
+            bus = enter(open_bus(options.interface, options.channel, options.bitrate, options.node))
+            pins = None
+            if options.terminal is not None:
+                interface, channel = options.terminal
+                pins = enter(open_bus(interface, channel, None, options.node))
             print(f"{name}: ready on {bus.channel_info}", file=sys.stderr, flush=True)
-            serve(bus, Terminal(options.node))
+            serve(bus, Terminal(options.node), pins)
     except KeyboardInterrupt:
         return 0
     except NoBus as error:
@@ -49,6 +56,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("-i", "--interface", metavar="IFACE", help="python-can interface")
     parser.add_argument("-c", "--channel", metavar="CHANNEL", help="its channel, such as vcan0")
     parser.add_argument("-b", "--bitrate", type=int, metavar="BIT/S", help="its bit rate")
+    text = "interface and channel of the terminal frames, where it is another"
+    parser.add_argument("--terminal", nargs=2, metavar=("IFACE", "CHANNEL"), help=text)
     return parser
 
 

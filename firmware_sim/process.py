@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from select import select
 from typing import Any, NoReturn
 
 import can
@@ -52,17 +53,36 @@ def _close(bus: can.BusABC) -> None:
         bus.shutdown()
 
 
-def serve(bus: can.BusABC, terminal: Terminal) -> NoReturn:
-    """Hands every frame to the drive and sends what it answers, for good; BusLost when the bus goes away."""
+def serve(bus: can.BusABC, terminal: Terminal, pins: can.BusABC | None = None) -> NoReturn:
+    """Hands every frame to the drive and sends what it answers, for good; BusLost when a bus goes away.
+
+    pins: the bus of terminal frames, if they have one of their own; then `bus` is looked at once a tick.
+    """
+    first = bus if pins is None else pins
     try:
         while True:
-            message = bus.recv()
-            if message is None or message.is_error_frame or message.is_fd:
-                continue
-            for frame in terminal.receive(as_frame(message)):
-                bus.send(as_message(frame), SEND_TIMEOUT)
+            message = first.recv()
+            while pins is not None and _waiting(bus) and (heard := bus.recv(0.0)) is not None:
+                _take(heard, terminal)
+            for frame in _take(message, terminal):
+                (first if frame.extended else bus).send(as_message(frame), SEND_TIMEOUT)
     except (can.CanError, OSError) as error:
         raise BusLost(str(error)) from error
+
+
+def _waiting(bus: can.BusABC) -> bool:
+    """Tells whether it is worth to ask a bus: some drivers wait for a frame even if they are told not to."""
+    try:
+        number = bus.fileno()
+    except NotImplementedError:
+        return True
+    return number < 0 or bool(select([number], [], [], 0.0)[0])
+
+
+def _take(message: can.Message | None, terminal: Terminal) -> list[Frame]:
+    if message is None or message.is_error_frame or message.is_fd:
+        return []
+    return terminal.receive(as_frame(message))
 
 
 def as_frame(message: can.Message) -> Frame:

@@ -42,9 +42,10 @@ def threaded(channel: str, *numbers: int) -> Iterator[None]:
 
 
 @contextmanager
-def process(node: int, interface: str, channel: str) -> Iterator[subprocess.Popen[str]]:
+def process(node: int, interface: str, channel: str, *more: str) -> Iterator[subprocess.Popen[str]]:
     """Runs `python -m firmware_sim` from when it says that it is ready, and ends it."""
     command = [sys.executable, "-m", "firmware_sim", "--node", str(node), "-i", interface, "-c", channel]
+    command += more
     running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ | QUICK)
     assert running.stderr is not None
     try:

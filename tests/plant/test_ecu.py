@@ -40,6 +40,11 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return verdict
 
 
+# For a machine that is busy: no cycle is skipped, nobody fails for being late.
+PATIENT = ["duration=0.4", "period=0.2", "bus.silent=hold", "realtime.tolerance=60", "sensors={}",
+           "estimator=odometry"]  # fmt: skip
+
+
 def assert_same(verdict: dict[str, Any], alone: dict[str, Any]) -> None:
     assert verdict["reason"] == ""
     assert [verdict[name] for name in HASHES] == [alone[name] for name in HASHES]
@@ -71,6 +76,21 @@ def test_the_same_process_serves_one_run_after_the_other(tmp_path: Path, alone: 
     with threaded("again", 1):
         for _ in range(2):
             assert_same(run(tmp_path, *on("virtual", "again", "left")), alone)
+
+
+@pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize("apart", [False, True], ids=["on the bus", "pins on a channel of their own"])
+def test_in_real_time_late_answers_are_counted(tmp_path: Path, apart: bool) -> None:
+    with Hub(2) as hub, Hub(2) as pins:
+        terminal = ["--terminal", "slcan", pins.paths[1]] if apart else []
+        settings = [f"terminal.{key}={value}" for key, value in
+                    (("interface", "slcan"), ("channel", pins.paths[0])) if apart]  # fmt: skip
+        with process(1, "slcan", hub.paths[1], *terminal):
+            verdict = run(tmp_path, *on("slcan", hub.paths[0], "left"), *settings, *PATIENT)
+    assert verdict["reason"] == ""
+    assert verdict["nodes"] == {"left": "ecu", "right": "simulated"}
+    assert set(verdict["realtime"]["late_answers"]) == {"left", "right", "left pins"}
+    assert 0 <= verdict["realtime"]["late_answers"]["left pins"] <= 2400  # ticks of boot, run and stop
 
 
 @pytest.fixture
@@ -122,3 +142,9 @@ def test_two_processes_for_one_node(tmp_path: Path) -> None:
 def test_elsewhere_without_a_bus(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match="left is elsewhere, but the wire is joined to no"):
         perform(load(str(small(tmp_path)), ["nodes.left=ecu"]), None)
+
+
+def test_a_channel_of_its_own_is_refused_in_lockstep(tmp_path: Path) -> None:
+    settings = on("virtual", "two channels", "left")
+    with pytest.raises(ScenarioError, match="terminal: two channels keep no order between them"):
+        perform(load(str(small(tmp_path)), [*settings, "terminal={interface: virtual, channel: pins}"]), None)
