@@ -22,6 +22,9 @@ _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast whe
 PdoName = Annotated[str, Field(pattern="^[rt]pdo[1-4]$")]
 Milliseconds = Annotated[int, Field(ge=1, le=0xFFFF)]
 
+OWN = "hilbed402"
+"""The table of the bench's own drive."""
+
 COMMANDED = ("controlword", "target_velocity")
 MEASURED = ("statusword", "velocity_actual", "position_actual")
 
