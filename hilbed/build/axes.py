@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from hilbed.build.standin import StandIn, plate
+from hilbed.can.drive_table import OWN, load_table
 from hilbed.can.node import Node
 from hilbed.can.reported import Reported
 from hilbed.can.terminals import Terminals
-from hilbed.can.wire import Wire
-from hilbed.plant.axes import Axis, EcuAxis, MirroredAxis, RealAxis, SimulatedAxis
+from hilbed.can.wire import Port, Wire
+from hilbed.plant.axes import Axis, EcuAxis, MirroredAxis, RealAxis, SimulatedAxis, own_firmware
 from hilbed.plant.drivetrain import DriveTrain
 from hilbed.plant.encoder import Encoder
 from hilbed.plant.specs import SimulatedSpec
@@ -23,6 +25,7 @@ class Workshop:
     inertia: float
     wire: Wire
     terminals: Terminals | None
+    stand_ins: dict[int, tuple[StandIn, Port]] = field(default_factory=dict)
 
     def axis(self, node: Node) -> Axis:
         """Returns the axis of a drive, seen from its wheel."""
@@ -44,7 +47,16 @@ def _encoder(shop: Workshop) -> Encoder:
 
 
 def _simulated(shop: Workshop, node: Node) -> Axis:
-    return SimulatedAxis(node.name, node.id, _train(shop), _encoder(shop), shop.wire.attach)
+    """The bench's own firmware where the table is its own, else a stand-in that speaks as the table says."""
+    train, encoder = _train(shop), _encoder(shop)
+    if node.table.identity == load_table(OWN).identity:
+        return SimulatedAxis(node.name, own_firmware(node.id), train, encoder, shop.wire.attach)
+    made = shop.stand_ins.get(node.id)
+    if made is None:
+        made = shop.stand_ins[node.id] = StandIn(node.id, node.table, plate(shop.spec)), shop.wire.attach(node.name)
+    standin, port = made
+    side = standin.axes[node.axis - 1]
+    return SimulatedAxis(node.name, lambda _: side, train, encoder, lambda _: port)
 
 
 def _ecu(shop: Workshop, node: Node) -> Axis:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from hilbed.can.drive_table import load_table
+from hilbed.can.drive_table import OWN, load_table
 from hilbed.can.node import Kind, Node
 from hilbed.spec import Finite, NonNegative, Positive, Spec
 from hilbed.types import ScenarioError
@@ -59,20 +59,38 @@ class NodeSpec(Spec):
 
     kind: simulated (here), ecu (its firmware is a process on the bus, motor and shaft are here) or real
     (drive and motor are elsewhere, the simulated wheel follows the reported speed); id: 1 to 126 (by default
-    left 1, right 2); table: of the drive's type; loop: of the speed; mode: csv (targets act at once) or pv
-    (the drive ramps); counts_per_turn: of the encoder, at the wheel; current_limit: A; slew: rad/s² at the
+    left 1, right 2); axis: which one of a node that has several; table: of the drive's type; loop: of the
+    speed, null where the table has no such setting; mode: csv (targets act at once) or pv (the drive ramps); counts_per_turn: of the encoder, at the wheel; current_limit: A; slew: rad/s² at the
     wheel, 0 for none; gains: by the names of the table's settings, such as kp, ki, slope.
     """
 
     kind: Kind = "simulated"
     id: Annotated[int, Field(ge=1, le=126)] | None = None
+    axis: Annotated[int, Field(ge=1, le=8)] = 1
     table: str = "hilbed402"
-    loop: Literal["variable_structure", "pi", "relay"] = "variable_structure"
+    loop: Literal["variable_structure", "pi", "relay"] | None = "variable_structure"
     mode: Literal["csv", "pv"] = "csv"
     counts_per_turn: Annotated[int, Field(ge=4, le=2**24)] | None = None
     current_limit: Positive | None = None
     slew: NonNegative | None = None
     gains: dict[str, Finite] = Field(default_factory=dict)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _suited(cls, data: Any) -> Any:
+        """Fills in what the drive's type takes where hilbed's own default is not for it."""
+        if not isinstance(data, dict):
+            return data
+        try:
+            table = load_table(str(data.get("table", OWN)))
+        except ScenarioError:
+            return data  # told by the table's own check
+        defaults: dict[str, Any] = {}
+        if "loop" not in table.settings:
+            defaults["loop"] = None
+        if "csv" not in table.modes:
+            defaults["mode"] = next(iter(table.modes))
+        return {**defaults, **data}
 
     @field_validator("table")
     @classmethod
@@ -94,7 +112,11 @@ class NodeSpec(Spec):
             if key not in table.settings:
                 raise ValueError(f"{self.table} has no setting {key!r}")
         if self.mode not in table.modes:
-            raise ValueError(f"{self.table} has no mode {self.mode!r}")
+            raise ValueError(f"{self.table} has no mode {self.mode!r}; it has {', '.join(table.modes)}")
+        if self.axis > table.axes:
+            raise ValueError(f"axis {self.axis}: {self.table} has {table.axes}")
+        if table.axes > 1 and self.kind == "ecu":
+            raise ValueError(f"an ecu node has one axis, {self.table} has {table.axes}")
         return self
 
     def settings(self) -> dict[str, float | str]:
@@ -116,6 +138,17 @@ class TerminalSpec(Spec):
     channel: str | int
 
 
+def _clash(one: Node, other: Node) -> str:
+    """Returns why two drives cannot be in one node; empty if they can: as two axes of it."""
+    if one.table.axes == 1 or one.table != other.table:
+        return f"nodes: {one.name} and {other.name} have the same node number {one.id}"
+    if one.axis == other.axis:
+        return f"nodes: {one.name} and {other.name} are both axis {one.axis} of node {one.id}"
+    if (one.kind, one.mode) != (other.kind, other.mode):
+        return f"nodes: {one.name} and {other.name} are one node, {one.id}: of one kind and in one mode"
+    return ""
+
+
 def resolve(specs: Mapping[str, NodeSpec], drives: Iterable[str]) -> tuple[Node, ...]:
     """Returns the nodes of a robot's drives in their order; ScenarioError with everything that is wrong.
 
@@ -128,10 +161,10 @@ def resolve(specs: Mapping[str, NodeSpec], drives: Iterable[str]) -> tuple[Node,
     for place, name in enumerate(names, start=1):
         spec = specs.get(name, NodeSpec())
         number = spec.id or DEFAULT_IDS.get(name, place)
-        twin = next((node for node in nodes if node.id == number), None)
-        if twin is not None:
-            problems.append(f"nodes: {twin.name} and {name} have the same node number {number}")
-        nodes.append(Node(name, number, load_table(spec.table), spec.mode, spec.settings(), kind=spec.kind))
+        table = load_table(spec.table)
+        node = Node(name, number, table, spec.mode, spec.settings(), spec.axis, spec.kind)
+        problems += [_clash(other, node) for other in nodes if other.id == number and _clash(other, node)]
+        nodes.append(node)
     if problems:
         raise ScenarioError("\n".join(problems))
     return tuple(nodes)

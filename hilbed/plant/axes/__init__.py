@@ -6,6 +6,6 @@ from hilbed.plant.axes.axis import Axis
 from hilbed.plant.axes.ecu import EcuAxis
 from hilbed.plant.axes.mirrored import MirroredAxis
 from hilbed.plant.axes.real import RealAxis
-from hilbed.plant.axes.simulated import SimulatedAxis
+from hilbed.plant.axes.simulated import SimulatedAxis, own_firmware
 
-__all__ = ["Axis", "EcuAxis", "MirroredAxis", "RealAxis", "SimulatedAxis"]
+__all__ = ["Axis", "EcuAxis", "MirroredAxis", "RealAxis", "SimulatedAxis", "own_firmware"]

@@ -22,8 +22,32 @@ class Port(Bus, Protocol):
     def plug(self, t: Nanos) -> None: ...
 
 
+class Firmware(Protocol):
+    """What a microcontroller runs: frames in, ticks, frames out; the pins as `firmware_sim.Drive` has them."""
+
+    @property
+    def outbox(self) -> list[Frame]: ...
+
+    @property
+    def bridge_enabled(self) -> bool: ...
+
+    @property
+    def speed_ref(self) -> float: ...
+
+    def on_frame(self, t: Nanos, frame: Frame) -> None: ...
+
+    def tick(self, t: Nanos, counts: int, current: int, supply: int) -> int: ...
+
+
+Accept: TypeAlias = Callable[[Collection[int]], None]
+Make: TypeAlias = Callable[[Accept], Firmware]
 Attach: TypeAlias = Callable[[str], Port]
 """Puts a node on the bus, by name."""
+
+
+def own_firmware(node: int) -> Make:
+    """Returns what makes the bench's own drive, by its node number."""
+    return lambda accept: cast("Firmware", Drive(node, accept))  # its frames have the same fields
 
 
 class Unpowered:
@@ -50,16 +74,17 @@ class SimulatedAxis:
     """
 
     __slots__ = (
-        "_node", "_outbox", "coulomb", "current", "duty", "encoder", "firmware", "name", "port", "speed_ref",
+        "_make", "_outbox", "coulomb", "current", "duty", "encoder", "firmware", "name", "port", "speed_ref",
         "supply_current", "target", "train",
     )  # fmt: skip
 
-    def __init__(self, name: str, node: int, train: Train, encoder: Encoder, attach: Attach) -> None:
+    def __init__(self, name: str, make: Make, train: Train, encoder: Encoder, attach: Attach) -> None:
+        """make: makes the firmware, told how to set the acceptance filter; made anew when power comes back."""
         self.name = name
         self.port = attach(name)
-        self._node = node
-        self.firmware: Drive | Unpowered = Drive(node, self.port.accept)
-        self._outbox = cast("list[Frame]", self.firmware.outbox)  # frames with the same fields
+        self._make = make
+        self.firmware: Firmware = make(self.port.accept)
+        self._outbox = self.firmware.outbox
         self.train = train
         self.encoder = encoder
         self.coulomb = train.coulomb
@@ -76,8 +101,8 @@ class SimulatedAxis:
         if on is not isinstance(self.firmware, Unpowered):
             return
         (self.port.plug if on else self.port.unplug)(t)
-        self.firmware = Drive(self._node, self.port.accept) if on else Unpowered()
-        self._outbox = cast("list[Frame]", self.firmware.outbox)
+        self.firmware = self._make(self.port.accept) if on else Unpowered()
+        self._outbox = self.firmware.outbox
 
     def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:
         train, firmware = self.train, self.firmware
