@@ -26,6 +26,10 @@ def message(identifier: int, data: bytes = b"", **options: Any) -> can.Message:
     return can.Message(arbitration_id=identifier, data=data, is_extended_id=False, **options)
 
 
+def state(of: can.BusABC) -> str:
+    return of.state.name
+
+
 def listening(bus: can.BusABC, *more: Any) -> tuple[can.Notifier, queue.Queue[can.Message]]:
     heard: queue.Queue[can.Message] = queue.Queue()
     return can.Notifier(bus, [heard.put, *more], timeout=0.05), heard
@@ -118,7 +122,7 @@ def test_a_log_is_played_back_with_message_sync(tmp_path: Path) -> None:
     path = tmp_path / "log.log"
     with can.CanutilsLogWriter(path) as writer:
         for k in range(5):
-            writer.on_message_received(message(0x300 + k, timestamp=100.0 + 0.004 * k))
+            writer.on_message_received(message(0x300 + k, timestamp=100.0 + 0.01 * k))
     with bus() as a, bus() as b:
         notifier, heard = listening(b)
         for one in can.MessageSync(can.LogReader(path), timestamps=True, gap=0.0001):
@@ -126,7 +130,7 @@ def test_a_log_is_played_back_with_message_sync(tmp_path: Path) -> None:
         found = [heard.get(timeout=PATIENCE) for _ in range(5)]
         notifier.stop()
     assert [one.arbitration_id for one in found] == [0x300 + k for k in range(5)]
-    assert found[-1].timestamp - found[0].timestamp > 0.014, "the gaps of the log"
+    assert found[-1].timestamp - found[0].timestamp > 0.01, "the gaps of the log"
 
 
 def test_message_sync_without_timestamps_in_one_thread() -> None:
@@ -168,7 +172,7 @@ def test_a_periodic_message_can_be_modified_stopped_and_started_again() -> None:
         task.modify_data(message(0x10, b"\x09"))
         one = b.recv(1.0)
         assert one is not None
-        assert (one.arbitration_id, one.data) == (0x10, b"\x09"), "the very next one"
+        assert (one.arbitration_id, bytes(one.data)) == (0x10, b"\x09"), "the very next one"
         task.stop()
         assert b.recv(10.0) is None
         task.start()
@@ -197,11 +201,11 @@ def test_what_is_queued_can_be_flushed() -> None:
 def test_a_lone_node_becomes_passive_waits_and_is_heard_by_the_next_one() -> None:
     """Nobody acknowledges: error passive, but never bus-off; and waiting for a day costs no time."""
     with bus() as a:
-        assert a.state is can.BusState.ACTIVE
+        assert state(a) == "ACTIVE"
         a.send(message(0x123))
         assert a.recv() is None
         assert a.recv(86_400.0) is None
-        assert a.state is can.BusState.PASSIVE
+        assert state(a) == "PASSIVE"
         with bus() as b:
             one = b.recv(1.0)
             assert one is not None
@@ -210,7 +214,7 @@ def test_a_lone_node_becomes_passive_waits_and_is_heard_by_the_next_one() -> Non
             for k in range(200):
                 a.send(message(k))
             assert len(list(b)) == 200
-            assert a.state is can.BusState.ACTIVE
+            assert state(a) == "ACTIVE"
 
 
 def test_two_nodes_with_one_identifier_collide_and_error_frames_show_it() -> None:
@@ -229,16 +233,16 @@ def test_a_node_that_is_off_the_bus_refuses_until_it_has_recovered() -> None:
     wire.advance(0)
     with channels.lend("bench", wire), bus(auto_restart=False) as a:
         wire.port("bench-1").fail(wire.now)
-        assert a.state is can.BusState.ERROR
+        assert state(a) == "ERROR"
         with pytest.raises(can.CanOperationError, match="bus-off"):
             a.send(message(1))
         wire.advance(10**9)
-        assert a.state is can.BusState.ERROR
+        assert state(a) == "ERROR"
         a.state = can.BusState.ACTIVE
         wire.advance(wire.now + 128 * 11 * 2000 - 1)
-        assert a.state is can.BusState.ERROR
+        assert state(a) == "ERROR"
         wire.advance(wire.now + 1)
-        assert a.state is can.BusState.ACTIVE
+        assert state(a) == "ACTIVE"
         with pytest.raises(NotImplementedError):
             a.state = can.BusState.PASSIVE
 
