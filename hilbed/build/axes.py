@@ -10,7 +10,8 @@ from hilbed.can.drive_table import OWN, load_table
 from hilbed.can.node import Node
 from hilbed.can.reported import Reported
 from hilbed.can.terminals import Terminals
-from hilbed.can.wire import Port, Wire
+from hilbed.can.port import Port
+from hilbed.can.wire import Wire
 from hilbed.plant.axes import Axis, EcuAxis, MirroredAxis, RealAxis, SimulatedAxis, own_firmware
 from hilbed.plant.drivetrain import DriveTrain
 from hilbed.plant.encoder import Encoder

@@ -60,8 +60,9 @@ class NodeSpec(Spec):
     kind: simulated (here), ecu (its firmware is a process on the bus, motor and shaft are here) or real
     (drive and motor are elsewhere, the simulated wheel follows the reported speed); id: 1 to 126 (by default
     left 1, right 2); axis: which one of a node that has several; table: of the drive's type; loop: of the
-    speed, null where the table has no such setting; mode: csv (targets act at once) or pv (the drive ramps); counts_per_turn: of the encoder, at the wheel; current_limit: A; slew: rad/s² at the
-    wheel, 0 for none; gains: by the names of the table's settings, such as kp, ki, slope.
+    speed, null where the table has no such setting; mode: csv (targets act at once) or pv (the drive ramps);
+    counts_per_turn: of the encoder, at the wheel; current_limit: A; slew: rad/s² at the wheel, 0 for none;
+    gains: by the names of the table's settings, such as kp, ki, slope.
     """
 
     kind: Kind = "simulated"

@@ -23,7 +23,7 @@ class Port(Bus, Protocol):
 
 
 class Firmware(Protocol):
-    """What a microcontroller runs: frames in, ticks, frames out; the pins as `firmware_sim.Drive` has them."""
+    """What a microcontroller runs: frames in, ticks, frames out; pins as `firmware_sim.Drive` has them."""
 
     @property
     def outbox(self) -> list[Frame]: ...
@@ -79,7 +79,7 @@ class SimulatedAxis:
     )  # fmt: skip
 
     def __init__(self, name: str, make: Make, train: Train, encoder: Encoder, attach: Attach) -> None:
-        """make: makes the firmware, told how to set the acceptance filter; made anew when power comes back."""
+        """make: makes the firmware, at first and when power comes back; told how to set the filter."""
         self.name = name
         self.port = attach(name)
         self._make = make
