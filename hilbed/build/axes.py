@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from hilbed.build.standin import StandIn, plate
 from hilbed.can.drive_table import OWN, load_table
 from hilbed.can.node import Node
+from hilbed.can.port import Port
 from hilbed.can.reported import Reported
 from hilbed.can.terminals import Terminals
-from hilbed.can.port import Port
 from hilbed.can.wire import Wire
 from hilbed.plant.axes import Axis, EcuAxis, MirroredAxis, RealAxis, SimulatedAxis, own_firmware
 from hilbed.plant.drivetrain import DriveTrain
@@ -54,7 +54,10 @@ def _simulated(shop: Workshop, node: Node) -> Axis:
         return SimulatedAxis(node.name, own_firmware(node.id), train, encoder, shop.wire.attach)
     made = shop.stand_ins.get(node.id)
     if made is None:
-        made = shop.stand_ins[node.id] = StandIn(node.id, node.table, plate(shop.spec)), shop.wire.attach(node.name)
+        made = shop.stand_ins[node.id] = (
+            StandIn(node.id, node.table, plate(shop.spec)),
+            shop.wire.attach(node.name),
+        )
     standin, port = made
     side = standin.axes[node.axis - 1]
     return SimulatedAxis(node.name, lambda _: side, train, encoder, lambda _: port)
