@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from hilbed.console import end_progress, progress, quiet_pipe
 from hilbed.scenario.load import load
+from hilbed.scenario.model import Scenario
 from hilbed.types import HilbedError, ScenarioError
 
 Settings = tuple[str, ...]
@@ -56,7 +57,7 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
         raise ScenarioError(f"--jobs {jobs}: at least one process has to run")
     variants = list(_variants(settings))
     for variant in variants:
-        load(scenario, variant)
+        _check_alone(load(scenario, variant).scenario)
     numbers = parse_seeds(seeds)
     todo = [Job(scenario, variant, seed) for variant in variants for seed in numbers]
     workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
@@ -67,6 +68,15 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
     with quiet_pipe():
         print(as_text(tables, results) if not as_json else as_json_text(tables, results))
     return 0 if all(result.status == 0 for result in results) else 1
+
+
+def _check_alone(scenario: Scenario) -> None:
+    """Raises ScenarioError where runs side by side would be in each other's way."""
+    if scenario.bus.carried:
+        raise ScenarioError(
+            f"bus.interface: {scenario.bus.interface}; the runs of a sweep cannot share a bus: "
+            "--set bus.interface=null sweeps the simulated one"
+        )
 
 
 def parse_seeds(text: str) -> range:

@@ -83,6 +83,12 @@ def _nodes(robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec, period
         yield Problem(("bus", "bitrate"), f"{text}; a longer period or a higher bit rate would do")
 
 
+def _joined(plant: PlantSpec, bus: BusSpec) -> Problems:
+    if bus.carried and not isinstance(plant, SimulatedSpec):
+        text = f"bus.interface: {bus.interface}; a recorded robot has no bus that could be joined to another"
+        yield Problem(("bus", "interface"), text)
+
+
 def _beacons(plant: PlantSpec) -> Problems:
     if isinstance(plant, SimulatedSpec):
         for k, beacon in enumerate(plant.beacons):
@@ -266,6 +272,6 @@ def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems
 
 
 CHECKS: tuple[Callable[..., Problems], ...] = (
-    _periods, _ticks, _nodes, _beacons, _start, _path,
+    _periods, _ticks, _nodes, _joined, _beacons, _start, _path,
     _files, _body, _recording, _cameras, _food, _guidance, _recorded, _disturbed, _bus_faults, _judged,
 )  # fmt: skip

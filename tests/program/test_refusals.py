@@ -210,6 +210,7 @@ def test_what_a_recorded_file_lacks_is_told_with_its_place(tmp_path: Path) -> No
         (("run", "demo", "--set", "duration=1", "--out", "/dev/null"), "/dev/null"),
         (("run", "demo", "--set", "duration=1", "--out", "/proc/run"), "/proc/run"),
         (("sweep", "demo", "--seeds", "5..1"), "there is no seed"),
+        (("sweep", "demo", "--seeds", "1..2", "--set", "bus.interface=virtual"), "cannot share a bus"),
         (("sweep", "demo", "--seeds", "a"), "give A..B"),
         (("sweep", "demo", "--seeds", "1..2", "--jobs", "0"), "--jobs 0"),
         (("sweep", "demo", "--seeds", "1..99999999999999999999"), "more than 100000 seeds"),
@@ -229,6 +230,14 @@ def test_a_command_that_cannot_be_taken_ends_with_4(
     assert message in ended.err
     assert "Traceback" not in ended.err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_recorded_robot_is_on_no_bus(tmp_path: Path) -> None:
+    text = "duration: 1\nplant: {kind: recorded, file: log.npz}\nbus: {interface: virtual}\nestimator: ekf\n"
+    said = wrong(tmp_path, text)
+    assert any(line.startswith("mine.yaml:3: bus.interface: virtual; a recorded robot") for line in said), (
+        said
+    )
 
 
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04" + bytes(100)])
