@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import struct
+import time
 
 import can
 
 from tests.hil.processes import VCAN
 
 COUNTS_PER_TURN = 66_000
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
-class Tester:
+class Probe:
     """A node on vcan0 that reads objects and listens."""
 
     def __init__(self) -> None:
@@ -22,18 +23,20 @@ class Tester:
     def close(self) -> None:
         self.bus.shutdown()
 
-    def await_frame(self, identifier: int) -> can.Message:
-        """Waits for the next frame with this identifier."""
-        while True:
-            message = self.bus.recv(PATIENCE)
-            assert message is not None, f"silence on {VCAN} while waiting for {identifier:03X}"
-            if message.arbitration_id == identifier and not message.is_extended_id:
+    def await_frame(self, identifier: int, least: float = 0.0) -> can.Message:
+        """Waits for a frame with this identifier; least: rad/s that it must tell of, if it is a TPDO1."""
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            message = self.bus.recv(1.0)
+            if message is None or message.arbitration_id != identifier or message.is_extended_id:
+                continue
+            if not least or pdo_speed(bytes(message.data)) >= least:
                 return message
+        raise AssertionError(f"no such {identifier:03X} on {VCAN} within {PATIENCE:g} s")
 
     def await_speed(self, node: int, least: float) -> None:
         """Waits until TPDO1 of a drive tells of at least this speed (rad/s)."""
-        while pdo_speed(bytes(self.await_frame(0x180 + node).data)) < least:
-            pass
+        self.await_frame(0x180 + node, least)
 
     def read(self, node: int, index: int, sub: int = 0) -> int:
         """Reads an object of at most four bytes, as a signed number."""

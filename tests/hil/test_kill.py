@@ -1,73 +1,78 @@
-"""`kill -9` of the controller: drives in other processes stop, by themselves and in time."""
+"""`kill -9` of the controller: a drive in another process stops, by itself and in time."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.hil.drives import Tester, pdo_speed, radians, sdo_number
-from tests.hil.processes import ON_VCAN, drive, end, on_the_bus, start
+from tests.hil.drives import Probe, radians, sdo_number
+from tests.hil.processes import ON_VCAN, REALTIME, Process, drive, on_the_bus, running
 from tests.hil.scenarios import short
 from tests.hil.witness import Candump, Seen
 
 pytestmark = pytest.mark.hil
 
-LEFT, RIGHT, CONTROLLER = 1, 2, 127
+LEFT, CONTROLLER = 1, 127
 CRUISE = 3.0  # rad/s at least
-STANDSTILL = 0.03  # rad/s
 ALLOWED = 0.1  # s beside consumer time and ramp
-SYNC_TIMEOUT = 0x2002
-REAL = ("--realtime", "--arm", "--record", "none", "--set", "nodes.left=real", "--set", "nodes.right=real")
-FAST = ("--set", "duration=120", "--set", "real_speed_limit=0.5", "--set", "reference.acceleration=2")
+SYNC_TIMEOUT, CONSUMER, DECELERATION, SPEED, THRESHOLD = 0x2002, 0x1016, 0x6085, 0x606C, 0x606F
+REAL = (*REALTIME, "--arm", "--record", "none", "--set", "nodes.left=real", "--set", "real_speed_limit=0.5")
+LONG = ("--set", "duration=120", "--set", "reference.acceleration=0.5")
 
 
 @pytest.fixture
-def tester() -> Iterator[Tester]:
-    tester = Tester()
-    yield tester
-    tester.close()
+def probe() -> Iterator[Probe]:
+    probe = Probe()
+    yield probe
+    probe.close()
 
 
-def test_drives_stop_when_the_controller_is_killed(candump: Candump, tester: Tester, tmp_path: Path) -> None:
-    with on_the_bus(drive(LEFT), drive(RIGHT)):
-        controller = start("hilbed", "run", str(short(tmp_path)), *ON_VCAN, *REAL, *FAST)
-        try:
-            for node in (LEFT, RIGHT):
-                tester.await_speed(node, CRUISE)
-            # The right drive is left with its heartbeat consumer alone: it does not miss the SYNC.
-            tester.write_u16(RIGHT, SYNC_TIMEOUT, 0)
-        finally:
+def test_a_drive_stops_when_the_controller_is_killed(candump: Candump, probe: Probe, tmp_path: Path) -> None:
+    run = ("run", str(short(tmp_path)), *ON_VCAN, *REAL, *LONG, "--out", str(tmp_path / "run"))
+    with on_the_bus(drive(LEFT)) as (left,):
+        with running("hilbed", *run) as controller:
+            probe.await_speed(LEFT, CRUISE)
+            probe.write_u16(LEFT, SYNC_TIMEOUT, 0)  # which would be quicker than the heartbeat's consumer
             controller.kill()
-            end(controller)
-        consumer = (tester.read(RIGHT, 0x1016, 1) & 0xFFFF) / 1000
-        deceleration = radians(tester.read(RIGHT, 0x6085))
-        for _ in range(300):
-            if max(abs(tester.read(node, 0x606C)) for node in (LEFT, RIGHT)) == 0:
-                break
+        watch(probe)
+        consumer = (probe.read(LEFT, CONSUMER, 1) & 0xFFFF) / 1000
+        deceleration = radians(probe.read(LEFT, DECELERATION))
+        stands = radians(probe.read(LEFT, THRESHOLD))
+        skip_if_starved(left)
     seen = candump.seen()
     alive = max(one.at for one in seen if one.frame.startswith(f"{0x700 + CONTROLLER:03X}#"))
-    for name, node in (("left", LEFT), ("right", RIGHT)):
-        speed, stopped = standstill(seen, node)
-        ramp = speed / deceleration
-        after = stopped - alive
-        print(f"{name}: {speed:.2f} rad/s, standstill {1e3 * after:.0f} ms after the last heartbeat "
-              f"(consumer {1e3 * consumer:.0f} ms, ramp {1e3 * ramp:.0f} ms)")  # fmt: skip
-        assert speed > CRUISE
-        assert after < consumer + ramp + ALLOWED
+    speeds = [(at - alive, speed) for at, speed in told(seen) if at > alive]
+    speed = max(speed for _, speed in speeds)
+    stopped = min(at for at, _ in speeds if all(abs(v) <= stands for later, v in speeds if later >= at))
+    ramp = speed / deceleration
+    print(f"from {speed:.2f} rad/s: standstill {1e3 * stopped:.0f} ms after the controller's last heartbeat "
+          f"(consumer {1e3 * consumer:.0f} ms, ramp {1e3 * ramp:.0f} ms)")  # fmt: skip
+    assert speed > CRUISE
+    assert consumer < stopped < consumer + ramp + ALLOWED
 
 
-def standstill(seen: list[Seen], node: int) -> tuple[float, float]:
-    """Returns the last speed that a PDO told of (rad/s) and when the drive said that it stood for good."""
-    speed = 0.0
-    stopped: float | None = None
+def watch(probe: Probe) -> None:
+    """Reads the drive's speed, for candump, until it is zero or should have been for long."""
+    for _ in range(400):
+        if probe.read(LEFT, SPEED) == 0:
+            return
+        time.sleep(0.005)  # leaves the drive alone
+
+
+def told(seen: list[Seen]) -> Iterator[tuple[float, float]]:
+    """Yields when the drive has answered and with which speed (rad/s)."""
     for at, frame in seen:
         identifier, _, data = frame.partition("#")
-        if identifier == f"{0x180 + node:03X}":
-            speed = pdo_speed(bytes.fromhex(data))
-        elif identifier == f"{0x580 + node:03X}" and data[2:8] == "6C6000":
-            turning = abs(radians(sdo_number(bytes.fromhex(data)))) > STANDSTILL
-            stopped = None if turning else stopped or at
-    assert stopped is not None, "it does not stop"
-    return speed, stopped
+        if identifier == f"{0x580 + LEFT:03X}" and data[2:8] == "6C6000":
+            yield at, radians(sdo_number(bytes.fromhex(data)))
+
+
+def skip_if_starved(drive: Process) -> None:
+    """Ends the drive; a machine that has kept it from ticking says nothing about when it stops."""
+    drive.terminate()
+    _, account = drive.communicate(timeout=60)
+    if "dropped" in account:
+        pytest.skip(f"this machine is too busy for a drive in real time: {account.strip()}")

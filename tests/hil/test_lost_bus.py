@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.hil.drives import Tester
-from tests.hil.processes import ON_VCAN, VCAN, end, start
+from tests.hil.drives import Probe
+from tests.hil.processes import ON_VCAN, REALTIME, VCAN, running
 from tests.hil.scenarios import short, verdict
 
 pytestmark = pytest.mark.hil
@@ -32,20 +32,17 @@ def bus_to_lose() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("bus_to_lose")
-@pytest.mark.parametrize("pace", [(), ("--realtime",)], ids=["lockstep", "realtime"])
+@pytest.mark.parametrize("pace", [(), REALTIME], ids=["lockstep", "realtime"])
 def test_a_bus_that_goes_down_ends_the_run(pace: tuple[str, ...], tmp_path: Path) -> None:
-    tester = Tester()
+    probe = Probe()
     out = tmp_path / "run"
     long = ("--set", "duration=300", "--set", "reference.speed=0.01", "--out", str(out))
-    process = start("hilbed", "run", str(short(tmp_path)), *ON_VCAN, *pace, *long)
-    try:
+    with running("hilbed", "run", str(short(tmp_path)), *ON_VCAN, *pace, *long) as process:
         for _ in range(20):
-            tester.await_frame(SYNC)
+            probe.await_frame(SYNC)
         link("down")
+        probe.close()
         _, errors = process.communicate(timeout=120)
-    finally:
-        tester.close()
-        end(process)
     assert process.returncode == 7
     told = verdict(out)
     assert not told["passed"]

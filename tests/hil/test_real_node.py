@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.hil.processes import ON_VCAN, drive, on_the_bus
+from tests.hil.processes import ON_VCAN, REALTIME, drive, on_the_bus
 from tests.hil.scenarios import short, verdict
 from tests.program.hilbed import hilbed
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.hil
 
 LEFT = 1
 LIMIT, RADIUS = 0.1, 0.1  # m/s, m
-ARMED = ("--realtime", "--arm", "--set", "nodes.left=real", "--set", "duration=2")
+ARMED = (*REALTIME, "--arm", "--record", "signals", "--set", "nodes.left=real", "--set", "duration=2")
 
 
 def test_the_simulated_wheel_follows_a_real_drive_and_a_twin_is_refused(tmp_path: Path) -> None:
@@ -23,7 +23,7 @@ def test_the_simulated_wheel_follows_a_real_drive_and_a_twin_is_refused(tmp_path
     with on_the_bus(drive(LEFT)):
         ended = hilbed("run", scenario, *ON_VCAN, *ARMED, "--out", tmp_path / "real")
         assert ended.status == 0, ended
-        twin = hilbed("run", scenario, *ON_VCAN, "--realtime", "--out", tmp_path / "twin")
+        twin = hilbed("run", scenario, *ON_VCAN, *REALTIME, "--out", tmp_path / "twin")
     signals = np.load(tmp_path / "real" / "signals.npz")
     left = signals["drive/left/speed"]
     print(f"left {left[-1]:.3f} rad/s, limit {LIMIT / RADIUS:.3f} rad/s")
