@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import errno
 import logging
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import can
 
+from hilbed.can.socketcan import complaint
 from hilbed.types import Frame, ScenarioError
 
 logging.getLogger("can").addHandler(logging.NullHandler())  # what drivers log is told by the bench itself
@@ -21,7 +21,6 @@ _HINTS = {
     errno.EBUSY: "another program has it open",
     errno.EAFNOSUPPORT: "this kernel has no CAN; scripts/vcan COMMAND runs a command where it has",
 }
-_UP = 1  # IFF_UP
 
 
 class Names(NamedTuple):
@@ -122,9 +121,9 @@ def _unresolved(interface: str | None, error: Exception) -> str:
 
 
 def _check_socketcan(names: Names) -> None:
-    """Finds what the socket would tell only later: no channel given, or an interface that is down."""
+    """Finds what the socket would tell only later, or never: no channel, an interface down, its bit rate."""
     if not names.channel:
         raise ScenarioError("bus: socketcan needs a channel, such as -c can0")
-    flags = Path("/sys/class/net") / str(names.channel) / "flags"
-    if flags.is_file() and not int(flags.read_text(), 16) & _UP:
-        raise ScenarioError(f"bus: {names} is down; `ip link set {names.channel} up` brings it up")
+    wrong = complaint(str(names.channel), names.bitrate)
+    if wrong:
+        raise ScenarioError(f"bus: {names} {wrong}")
