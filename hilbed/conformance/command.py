@@ -31,7 +31,7 @@ def main(options: argparse.Namespace) -> int:
     bitrate = options.bitrate or DEFAULT_BITRATE
     _check_out(options.out)
     results: list[Result] = []
-    with _end(options, bitrate) as end:
+    with _end(options, node, bitrate) as end:
         about = {"node": node.id, "axis": node.axis, "drive": node.table.name, "bus": end.name}
         terms = Terms(options.arm, options.speed, bitrate, end.exact)
         for result in perform(Subject(end.link, node), terms):
@@ -58,9 +58,9 @@ def _node(options: argparse.Namespace) -> Node:
 
 
 @contextmanager
-def _end(options: argparse.Namespace, bitrate: int) -> Iterator[End]:
+def _end(options: argparse.Namespace, node: Node, bitrate: int) -> Iterator[End]:
     if options.interface == WIRE:
-        yield simulated(options.node, bitrate)
+        yield simulated(node, bitrate)
         return
     with live(options.interface, options.channel, options.bitrate) as end:
         yield end

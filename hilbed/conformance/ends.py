@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
 
+from hilbed.build.standin import StandIn, plate
 from hilbed.bustools.live import open_bus
+from hilbed.can.drive_table import OWN, DriveTable, load_table
 from hilbed.can.link import Link
+from hilbed.can.node import Node
 from hilbed.can.wire import Wire
 from hilbed.clock import MILLISECOND
 from hilbed.drive.desk import Build, Desk
-from hilbed.types import Nanos
+from hilbed.plant.specs import SimulatedSpec
+from hilbed.types import Frame, Nanos
+
+if TYPE_CHECKING:
+    from firmware_sim import Drive
 
 WIRE = "hilbed"
 _FOREVER: Nanos = 1 << 62
@@ -32,7 +39,30 @@ def live(interface: str | None, channel: str | None, bitrate: int | None) -> Ite
         yield End(Link(bus, bus.pump, bus.now, _FOREVER), bus.adapter.name, exact=False)
 
 
-def on_the_wire(desk: Desk, bitrate: int) -> End:
+class Ticking(Protocol):
+    """A drive with its motor: a millisecond at a time, frames in, frames out."""
+
+    def tick(self, t: Nanos, frames: Iterable[Frame]) -> list[Frame]: ...
+
+
+class OtherDesk:
+    """A drive of another type on a desk: a stand-in that speaks as its table says, a motor for each axis."""
+
+    def __init__(self, node: int, table: DriveTable) -> None:
+        standin = StandIn(node, table, plate(SimulatedSpec(kind="bullet")))
+        self.motors = [Desk(Build(node)) for _ in standin.axes]
+        for motor, side in zip(self.motors, standin.axes, strict=True):
+            motor.firmware = cast("Drive", side)  # the same pins
+
+    def tick(self, t: Nanos, frames: Iterable[Frame]) -> list[Frame]:
+        """Runs the node and its first axis, then the others; returns what they send."""
+        sent = self.motors[0].tick(t, frames)
+        for motor in self.motors[1:]:
+            sent += motor.tick(t, ())
+        return sent
+
+
+def on_the_wire(desk: Ticking, bitrate: int) -> End:
     """Returns a drive of this process on a wire of its own, in simulated time."""
     wire = Wire(bitrate)
     port, drive = wire.attach("tester"), wire.attach("drive")
@@ -47,6 +77,7 @@ def on_the_wire(desk: Desk, bitrate: int) -> End:
     return End(Link(port, pump, 0, _FOREVER), f"wire, {bitrate} bit/s", exact=True)
 
 
-def simulated(node: int, bitrate: int) -> End:
-    """Returns the simulated drive with its own data, as `hilbed drive` has it."""
-    return on_the_wire(Desk(Build(node)), bitrate)
+def simulated(node: Node, bitrate: int) -> End:
+    """Returns the simulated drive of a table's type, with its own data."""
+    own = node.table.identity == load_table(OWN).identity
+    return on_the_wire(Desk(Build(node.id)) if own else OtherDesk(node.id, node.table), bitrate)

@@ -60,8 +60,8 @@ def test_same_bytes_and_values_as_cantools(drawn: tuple[list[tuple[str, str]], d
 def test_pdos_of_the_tables(name: str) -> None:
     table = load_table(name)
     for pdo in table.pdos:
-        codec = table.codec(pdo)
-        fields = [(word, table.objects[word].type) for word in table.pdos[pdo].map]
+        fields = [(f"{value.word}_{value.axis}", value.type) for value in table.values(pdo)]
+        codec = PdoCodec(fields)
         message = read_dbc(dbc([(word, str(data_type)) for word, data_type in fields]))
         data = bytes(range(0x81, 0x81 + codec.size))
         assert codec.decode(data) == message.decode(data)

@@ -33,6 +33,9 @@ def quick_stop(speed: float, subject: Subject) -> Iterator[Result]:
 def speed_limit(speed: float, subject: Subject) -> Iterator[Result]:
     """A target of twice the highest velocity (607F) gives no more than that."""
     highest = abs(speed) / 2
+    if "max_velocity" not in subject.node.table.objects:
+        yield unsupported("limits/speed", "the table names no max_velocity")
+        return
     try:
         subject.write("max_velocity", abs(highest * subject.node.velocity_per_radian))
     except SdoError as error:
