@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hilbed import collector, loop, verdict
+from hilbed import collector, loop, verdict, yaml12
 from hilbed.build import BOOT, Bench, build
 from hilbed.build.elsewhere import check_armed
 from hilbed.clock import SECOND, nanos, seconds
@@ -25,7 +25,6 @@ from hilbed.record.hashing import BusDigest, run_hash, signals_hash
 from hilbed.record.journal import HELPING, Journal
 from hilbed.record.notes import Notes
 from hilbed.record.row import Sink
-from hilbed.scenario import yaml12
 from hilbed.scenario.load import Loaded, resolved
 from hilbed.scenario.model import Scenario
 from hilbed.scenario.own_files import pack

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from hilbed.clock import SECOND
-from hilbed.scenario.problems import shorten
+from hilbed.problems import shorten
 from hilbed.types import Frame, Nanos, Received, ScenarioError
 
 MOST_PROBLEMS = 20

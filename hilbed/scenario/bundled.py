@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from hilbed.scenario import yaml12
-from hilbed.scenario.problems import nearest, shorten
+from hilbed import yaml12
+from hilbed.problems import nearest, shorten
 from hilbed.types import ScenarioError
 
 FOLDER = Path(__file__).parent.parent / "scenarios"

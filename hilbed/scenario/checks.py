@@ -20,9 +20,9 @@ from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.plant.chopper import Switched, periods
 from hilbed.plant.urdf import diffdrive, meshes
+from hilbed.problems import Problem, nearest
 from hilbed.robots import ROBOTS, RobotSpec
 from hilbed.scenario import files
-from hilbed.scenario.problems import Problem, nearest
 from hilbed.sensors import SensorSpec
 from hilbed.sensors.camera import names
 from hilbed.sensors.pan import make_pan

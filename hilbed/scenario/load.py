@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from hilbed.scenario import bundled, checks, overlay, problems, yaml12
+from hilbed import problems, yaml12
+from hilbed.scenario import bundled, checks, overlay
 from hilbed.scenario.model import Scenario
 from hilbed.types import ScenarioError
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any
 
-from hilbed.scenario import yaml12
-from hilbed.scenario.problems import shorten
+from hilbed import yaml12
+from hilbed.problems import shorten
 from hilbed.types import ScenarioError
 
 

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from hilbed import yaml12
 from hilbed.build import build
 from hilbed.cost import Cost
 from hilbed.record.notes import Notes
-from hilbed.scenario import bundled, yaml12
+from hilbed.scenario import bundled
 from hilbed.scenario.load import load, resolved
 from hilbed.versions import versions
 from tests.bench import needs_data

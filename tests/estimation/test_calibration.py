@@ -7,11 +7,11 @@ from math import pi
 import numpy as np
 import pytest
 
+from hilbed import yaml12
 from hilbed.estimation.calibration import increments
 from hilbed.estimation.specs import EkfSpec
 from hilbed.fit import Fitted, first_part, fit_signals, lines
 from hilbed.poses import moved
-from hilbed.scenario import yaml12
 from hilbed.types import Pose, ScenarioError
 from tests.estimation.experiment import BEACONS, PERIOD, START, Errors, Step, experiment
 

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 import pytest
 from pydantic import Field, ValidationError
 
-from hilbed.scenario import overlay, problems, yaml12
+from hilbed import problems, yaml12
+from hilbed.scenario import overlay
 from hilbed.spec import Positive, Spec
 from hilbed.types import ScenarioError
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hilbed.scenario import yaml12
+from hilbed import yaml12
 from hilbed.types import ScenarioError
 
 

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_ori
 
 from pydantic import BaseModel, ValidationError
 
-from hilbed.scenario import yaml12
+from hilbed import yaml12
 
 
 class Problem(NamedTuple):
