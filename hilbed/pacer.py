@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Literal, NamedTuple, Protocol
+from typing import Annotated, Literal, NamedTuple, Protocol
+
+from pydantic import Field
 
 from hilbed.clock import nanos, seconds
 from hilbed.cost import Cost, perf_counter
@@ -22,12 +24,13 @@ class RealtimeSpec(Spec):
 
     overrun: of a cycle that begins late by more than `tolerance` (s, half a period by default): skip (its
     commands are not sent, the schedule is kept) or fail (the run); give_up: s, by which a run that begins a
-    cycle so late has lost real time for good and fails.
+    cycle so late has lost real time for good and fails; boot: whole s that drives elsewhere have to come up.
     """
 
     overrun: Literal["skip", "fail"] = "skip"
     tolerance: Positive | None = None
     give_up: Positive = 1.0
+    boot: Annotated[int, Field(ge=1, le=60)] = 3
 
 
 class Overrun(HilbedError):

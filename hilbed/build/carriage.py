@@ -32,10 +32,14 @@ class Carriage(NamedTuple):
             self.pacer.start(t)
 
     def due(self, t: Nanos) -> bool:
-        """Waits for a cycle's beginning in real time; returns whether its commands may still be sent."""
+        """Waits for a cycle's beginning in real time; returns whether its commands may still be sent.
+
+        Where everybody is in this process, the drives wait as well: no command is too late for them.
+        """
         kept = self.pacer is None or self.pacer.due(t)
-        if self.gateway is not None:
-            self.gateway.pull(t)
+        if self.gateway is None:
+            return True
+        self.gateway.pull(t)
         return kept
 
     def stop(self) -> None:
