@@ -112,7 +112,7 @@ def read(text: str, name: str) -> tuple[dict[str, Any], Marks]:
     Raises ScenarioError with name and line.
     """
     if len(text) > LARGEST:
-        raise ScenarioError(f"{name}: {len(text)} characters, a scenario has at most {LARGEST}")
+        raise ScenarioError(f"{name}: {len(text)} characters, a file has at most {LARGEST}")
     try:
         loader = _Loader(text)
         root = loader.get_single_node()
@@ -126,7 +126,7 @@ def read(text: str, name: str) -> tuple[dict[str, Any], Marks]:
         raise ScenarioError(f"{name}: not YAML: {error}") from None
     if not isinstance(data, dict):
         raise ScenarioError(
-            f"{name}:1: a scenario is a mapping of keys to values, this is {type(data).__name__}"
+            f"{name}:1: this should be a mapping of keys to values, not {type(data).__name__}"
         )
     return data, Marks(root)
 

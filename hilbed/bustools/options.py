@@ -87,13 +87,13 @@ def _decoder(options: argparse.Namespace) -> Decoder:
     from hilbed.bustools.decoder import Decoder, read_dbc
     from hilbed.bustools.drives import nodes_in
     from hilbed.can.dbc import database
-    from hilbed.can.drive_table import load_table
+    from hilbed.can.drive_table import named_table
 
     if options.dbc is not None:
         return Decoder(read_dbc(options.dbc))
     if options.run is not None:
         return Decoder(database(nodes_in(options.run)))
-    return Decoder(database([]), load_table(options.drive or "hilbed402"))
+    return Decoder(database([]), named_table(options.drive or "hilbed402"))
 
 
 def _dbc(options: argparse.Namespace) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, lru_cache
 from itertools import product
 from pathlib import Path
 from typing import Annotated
@@ -11,9 +11,11 @@ from typing import Annotated
 import yaml
 from pydantic import Field, ValidationError, model_validator
 
+from hilbed import problems, yaml12
 from hilbed.can.codec import PdoCodec, bit_length
 from hilbed.can.objects import U32, Entry, MappedValue, Object, Pdo, Setting, Write
 from hilbed.can.units import Units
+from hilbed.problems import nearest, shorten
 from hilbed.spec import Spec
 from hilbed.types import ScenarioError
 
@@ -147,21 +149,48 @@ def bundled_tables() -> list[str]:
     return sorted(path.stem for path in TABLES.glob("*.yaml"))
 
 
-@cache
+def is_file(name: str) -> bool:
+    """Tells whether a table is named by its file, not by its type."""
+    return name.endswith((".yaml", ".yml"))
+
+
 def load_table(name: str) -> DriveTable:
-    """Returns a bundled table by name; ScenarioError where there is none."""
+    """Returns a bundled table by name, or that of a file by its absolute path; ScenarioError."""
+    if is_file(name):
+        path = Path(name)
+        if not (path.is_absolute() and path.is_file()):
+            raise ScenarioError(f"there is no drive table {name}; a scenario's own lies in its folder")
+        return _kept(path, path.stat().st_mtime_ns)
     if name not in bundled_tables():
-        raise ScenarioError(f"no drive table {name!r}; there are: {', '.join(bundled_tables())}")
-    return read_table(TABLES / f"{name}.yaml")
+        raise ScenarioError(f"no drive table {shorten(name)}{nearest(name, bundled_tables())}")
+    return _bundled(name)
+
+
+def named_table(name: str) -> DriveTable:
+    """Returns the table that a user names on the command line: by its type, or by its file."""
+    return load_table(str(Path(name).resolve()) if is_file(name) else name)
+
+
+@cache
+def _bundled(name: str) -> DriveTable:
+    """Reads a table that comes with hilbed and therefore holds."""
+    return DriveTable.model_validate(yaml.load((TABLES / f"{name}.yaml").read_bytes(), _LOADER))
+
+
+@lru_cache(maxsize=16)
+def _kept(path: Path, _: int) -> DriveTable:
+    return read_table(path)
 
 
 def read_table(path: Path) -> DriveTable:
-    """Reads a table's file; ScenarioError with the file and all that is wrong in it."""
+    """Reads a table's file; ScenarioError with file, line and key of everything that is wrong in it."""
     try:
-        return DriveTable.model_validate(yaml.load(path.read_text(encoding="utf-8"), _LOADER))
-    except (OSError, yaml.YAMLError) as error:
-        raise ScenarioError(f"{path}: {error}") from error
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"{path}: cannot be read: {error}") from None
+    data, marks = yaml12.read(text, str(path))
+    try:
+        return DriveTable.model_validate(data)
     except ValidationError as error:
-        raise ScenarioError(
-            "\n".join(f"{path}: {'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
-        ) from error
+        places = problems.Places(str(path), marks)
+        raise ScenarioError(places.tell(problems.from_validation(error, DriveTable))) from None

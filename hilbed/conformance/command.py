@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from hilbed.can.drive_table import load_table
+from hilbed.can.drive_table import named_table
 from hilbed.can.node import Node
 from hilbed.conformance import report
 from hilbed.conformance.ends import WIRE, End, live, simulated
@@ -44,7 +44,7 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _node(options: argparse.Namespace) -> Node:
-    table = load_table(options.drive)
+    table = named_table(options.drive)
     problems = []
     if not 1 <= options.node <= 127:
         problems.append(f"--node {options.node}: a node's number is 1 to 127")
