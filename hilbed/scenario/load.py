@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from hilbed import problems, yaml12
-from hilbed.scenario import bundled, checks, overlay
+from hilbed.scenario import bundled, checks, overlay, tables
 from hilbed.scenario.model import Scenario
 from hilbed.types import ScenarioError
 
@@ -35,6 +35,7 @@ def load(name: str, settings: Sequence[str] = (), seed: int | None = None) -> Lo
     places = problems.Places(str(path), marks)
     for setting in [*settings, *([] if seed is None else [f"seed={seed}"])]:
         places.overlaid(overlay.apply(data, setting), setting)
+    tables.localise(data, path.parent)
     return Loaded(short, _validated(data, places, path.parent), path.parent, bundled.title(text))
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from hilbed.plant.urdf import meshes
 from hilbed.record.folder import FILES
-from hilbed.scenario import files
+from hilbed.scenario import files, tables
 from hilbed.scenario.model import Scenario
 from hilbed.types import ScenarioError
 
@@ -28,10 +28,12 @@ def pack(scenario: Scenario, folder: Path) -> Packed:
     """
     own = [(key, name) for key, name in files.named(scenario.robot, scenario.plant) if files.is_own(name)]
     root = folder.resolve()
-    found = {path for _, name in own for path in _with_meshes(name, root)}
+    own_tables = tables.own(scenario.nodes, root)
+    found = own_tables | {path for _, name in own for path in _with_meshes(name, root)}
     if all(path.is_relative_to(root / FILES) for path in found):
         root /= FILES  # a run of a run does not bury its files deeper
-    changes = {}
+    places = {path: _place(path, root) for path in own_tables}
+    changes: dict[str, object] = {"nodes": tables.moved(scenario.nodes, places)} if places else {}
     for (block, key), name in own:
         place = _place(files.resolve(name, folder), root)
         changes[block] = getattr(scenario, block).model_copy(update={key: place})
