@@ -1,7 +1,7 @@
 """The bench in real time: simulated time waits for the wall clock, by absolute deadlines.
 
 Who comes too late for a deadline does not hurry to catch up with commands: the world goes on, the commands
-of that cycle are not sent, and the next deadlines stay where they were.
+of that cycle are not sent to a bus that others are on, and the next deadlines stay where they were.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from hilbed.types import HilbedError, Nanos
 class RealtimeSpec(Spec):
     """Pace of a run: a second of the wall clock for each simulated one.
 
-    overrun: of a cycle that begins late by more than `tolerance` (s, half a period by default): skip (its
-    commands are not sent, the schedule is kept) or fail (the run); give_up: s, by which a run that begins a
-    cycle so late has lost real time for good and fails; boot: whole s that drives elsewhere have to come up.
+    overrun: of a cycle that begins late by more than `tolerance` (s, half a period by default): skip (it is
+    counted, its commands are not sent to others, the schedule is kept) or fail (the run); give_up: s; a run
+    that begins a cycle so late has lost real time for good and fails; boot: whole s that drives elsewhere have to come up.
     """
 
     overrun: Literal["skip", "fail"] = "skip"
