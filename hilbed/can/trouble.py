@@ -15,6 +15,9 @@ from hilbed.types import ACK_ERROR, NO_ERROR, Frame, Nanos
 SUSPEND_BITS = 8
 """An error-passive node that has just sent waits for so many bits longer than the others."""
 
+OVERRULED_BITS = SUSPEND_BITS + 6
+"""One that was overruled meanwhile, too: its flag and delimiter end six bits after the other's frame."""
+
 _QUIET_BITS = 11  # recessive at the end of every frame, interframe space included
 
 
@@ -47,7 +50,7 @@ class Trouble:
         self, ports: Sequence[Port], bit: Nanos, on_state: Callable[[Nanos, str, str], None]
     ) -> None:
         self.tamper: Tamper | None = None
-        self.suspended: Collection[Port] = ()
+        self._suspended: dict[Port, int] = {}  # by how many bits
         self._ports = ports
         self._bit = bit
         self._on_state = on_state
@@ -66,7 +69,12 @@ class Trouble:
 
     def barred(self, start: Nanos, free: Nanos) -> Collection[Port]:
         """Returns who may not start a frame at `start`; free: since when the others may."""
-        return self.suspended if start < free + SUSPEND_BITS * self._bit else ()
+        return [port for port, bits in self._suspended.items() if start < free + bits * self._bit]
+
+    def released(self, start: Nanos, free: Nanos) -> Nanos:
+        """Returns when the next of those who may not start at `start` may."""
+        ends = [free + bits * self._bit for bits in self._suspended.values()]
+        return min(end for end in ends if end > start)
 
     def alone(self, senders: Sequence[Port]) -> bool:
         """Nobody hears these, they have long found out, and nobody is on the way back."""
@@ -106,7 +114,11 @@ class Trouble:
                 port.errors.failed_to_receive(first and not port.errors.passive)
             else:
                 port.errors.received()
-        self.suspended = [port for port in senders if port.errors.passive]
+        self._suspended = {
+            port: SUSPEND_BITS if error or k in through else OVERRULED_BITS
+            for k, port in enumerate(senders)
+            if port.errors.passive
+        }
         changed = [port for port, state in before.items() if port.errors.state != state]
         for port in changed:
             self._on_state(t, port.name, port.errors.state)

@@ -18,7 +18,7 @@ from hilbed.can.error_state import BUS_OFF
 from hilbed.can.frame_length import INTERFRAME_BITS, frame_bits
 from hilbed.can.port import Listener, Port, Queued
 from hilbed.can.statistics import Statistics
-from hilbed.can.trouble import SUSPEND_BITS, Tamper, Trial, Trouble
+from hilbed.can.trouble import Tamper, Trial, Trouble
 from hilbed.clock import SECOND
 from hilbed.types import NO_ERROR, BusError, Frame, Nanos, Transfer
 
@@ -305,7 +305,7 @@ class Wire:
             items = self._front(start)
             if items:
                 return self._launch(items, start)
-            start = self._free + SUSPEND_BITS * self._bit
+            start = self._trouble.released(start, self._free)
             if waiting and waiting[0][0] < start:
                 start = waiting[0][0]
         return None
