@@ -12,6 +12,7 @@ from typing import Any
 from hilbed.can.drive_table import named_table
 from hilbed.can.node import Node
 from hilbed.conformance import report
+from hilbed.conformance.eds import read_eds
 from hilbed.conformance.ends import WIRE, End, live, simulated
 from hilbed.conformance.result import Result
 from hilbed.conformance.subject import Subject
@@ -29,11 +30,12 @@ def main(options: argparse.Namespace) -> int:
     """Does `hilbed conformance`; returns the exit status. Raises ScenarioError, BusError."""
     node = _node(options)
     bitrate = options.bitrate or DEFAULT_BITRATE
+    promises = [] if options.eds is None else read_eds(options.eds)
     _check_out(options.out)
     results: list[Result] = []
     with _end(options, node, bitrate) as end:
         about = {"node": node.id, "axis": node.axis, "drive": node.table.name, "bus": end.name}
-        terms = Terms(options.arm, options.speed, bitrate, end.exact)
+        terms = Terms(options.arm, options.speed, bitrate, end.exact, promises)
         for result in perform(Subject(end.link, node), terms):
             results.append(result)
             if not options.json:

@@ -14,6 +14,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--node", type=int, required=True, metavar="N", help="node number, 1 to 127")
     parser.add_argument("--drive", default="hilbed402", metavar="TABLE", help="drive table (hilbed402)")
     parser.add_argument("--axis", type=int, default=1, metavar="K", help="of a node with several (1)")
+    parser.add_argument("--eds", type=Path, metavar="FILE", help="check its objects against this data sheet")
     parser.add_argument("--arm", action="store_true", help="let the motor turn; else only checks at rest")
     parser.add_argument(
         "--speed", type=float, default=1.0, metavar="RAD/S", help="of the wheel, where it has to turn (1)"

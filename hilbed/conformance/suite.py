@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import NamedTuple, TypeAlias
@@ -11,7 +11,8 @@ from hilbed.can import cia402, nmt
 from hilbed.can.sdo import SdoError
 from hilbed.can.sdo_aborts import TIMEOUT
 from hilbed.clock import MILLISECOND
-from hilbed.conformance.checks import bus, faults, identity, modes, motion, pdos, states
+from hilbed.conformance.checks import bus, faults, identity, modes, motion, pdos, sheet, states
+from hilbed.conformance.eds import Promise
 from hilbed.conformance.result import Result
 from hilbed.conformance.subject import Stuck, Subject
 from hilbed.types import BusError, Nanos
@@ -24,13 +25,14 @@ Check: TypeAlias = Callable[[Subject], Iterable[Result]]
 class Terms(NamedTuple):
     """What the checks may do: turn the motor (armed), how fast (rad/s); what the bus is.
 
-    exact: it is the simulated wire, which takes every load.
+    exact: it is the simulated wire, which takes every load; promises: entries of the drive's EDS, if given.
     """
 
     armed: bool
     speed: float
     bitrate: int
     exact: bool
+    promises: Sequence[Promise] = ()
 
 
 class Item(NamedTuple):
@@ -43,8 +45,10 @@ class Item(NamedTuple):
 
 def suite(terms: Terms) -> list[Item]:
     """Returns the checks, those without power first."""
+    data_sheet = [Item("eds", partial(sheet.sheet, terms.promises))] if terms.promises else []
     return [
         Item("identity", identity.identity),
+        *data_sheet,
         Item("sdo", identity.sdo),
         Item("modes", modes.modes),
         Item("pdo", pdos.remap),
