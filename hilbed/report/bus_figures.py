@@ -31,9 +31,11 @@ def bus_load(run: Run) -> str | None:
 
 def latency(run: Run) -> str | None:
     """Returns median, 99th percentile and longest latency by identifier; None without a bus."""
-    running = run.signals.get("bus/t", np.empty(0)) >= 0
-    if not running.any():
+    if not (run.signals.get("bus/t", np.empty(0)) >= 0).any():
         return None
+    running = run.signals["bus/t"] >= 0
+    if "bus/error" in run.signals:
+        running &= run.signals["bus/error"] == 0
     identifiers, values = run.signals["bus/id"][running], 1e3 * run.signals["bus/latency"][running]
     found, counts = np.unique(identifiers, return_counts=True)
     found = np.sort(found[np.argsort(-counts)[:_MOST]])[::-1]

@@ -73,7 +73,8 @@ def test_a_full_run_has_every_section_on_one_page(run: Path) -> None:
     assert page.titles == [
         "Criteria", "Cost", "Path", "Error of the estimate", "Wheel speeds", "Duties, currents, loads",
         "Distance to truth", "Slip: surface of the wheel against the ground", "Azimuth residuals, by beacon",
-        "Innovations", "Bus load in each 0.1 s", "Bus latency by identifier", "Camera", "Metrics", "Scenario",
+        "Innovations", "Bus load in each 0.1 s", "Bus latency by identifier", "Camera",
+        "Frames by identifier", "Metrics", "Scenario",
     ]  # fmt: skip
     text = "".join(page.words)
     for word in (
@@ -176,3 +177,47 @@ def test_thinning_keeps_the_extremes_and_the_ends() -> None:
     assert thin_value.min() == value.min()
     assert (np.diff(thin_t) > 0).all()
     assert thin_t[-1] > 59.9
+
+
+def test_the_table_of_frames_adds_up(tmp_path: Path) -> None:
+    """Two error frames of one identifier; latency is queueing, arbitration and transfer."""
+    from hilbed.criteria import Signals
+    from hilbed.report import bus_table
+    from hilbed.report.run import read_run
+
+    run = read_run(synthetic.write(tmp_path / "run"))
+    signals = Signals(
+        {
+            "bus/t": np.array([-1.0, 0.01, 0.02, 0.03, 0.031, 0.04]),
+            "bus/latency": np.array([9, 300, 500, 200, 250, 700]) * 1e-6,
+            "bus/duration": np.full(6, 200e-6),
+            "bus/arbitration": np.array([0, 0, 300, 0, 0, 400]) * 1e-6,
+            "bus/id": np.array([0x181, 0x181, 0x181, 0x181, 0x181, 0x123]),
+            "bus/error": np.array([0, 0, 0, 1, 1, 0]),
+        }
+    )
+    table = bus_table.frames(run._replace(signals=signals))
+    assert table is not None
+    rows = [re.findall(r"<t[dh][^>]*>(?:<code>)?([^<]*)", row) for row in table.split("<tr>")[2:]]
+    assert rows == [
+        ["0x123", "", "1", "", "100 · 100", "400 · 400", "200 · 200", ""],
+        ["0x181", "TPDO1, node 1", "2", "9.8", "50 · 100", "150 · 300", "200 · 200", "2"],
+    ]
+    assert bus_table.frames(run._replace(signals=Signals(t=np.zeros(3)))) is None
+
+
+@pytest.mark.parametrize(
+    ("identifier", "name"),
+    [
+        (0x000, "NMT"),
+        (0x080, "SYNC"),
+        (0x085, "EMCY, node 5"),
+        (0x77F, "heartbeat, controller"),
+        (0x123, ""),
+        (0x1FFE0001, ""),
+    ],
+)
+def test_identifiers_are_named_as_canopen_does(identifier: int, name: str) -> None:
+    from hilbed.report.bus_table import name_of
+
+    assert name_of(identifier) == name
