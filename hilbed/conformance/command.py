@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -36,10 +36,11 @@ def main(options: argparse.Namespace) -> int:
     with _end(options, node, bitrate) as end:
         about = {"node": node.id, "axis": node.axis, "drive": node.table.name, "bus": end.name}
         terms = Terms(options.arm, options.speed, bitrate, end.exact, promises)
-        for result in perform(Subject(end.link, node), terms):
-            results.append(result)
-            if not options.json:
-                print(report.line(result), flush=True)
+        with closing(perform(Subject(end.link, node), terms)) as found:  # stops the drive before the bus goes
+            for result in found:
+                results.append(result)
+                if not options.json:
+                    print(report.line(result), flush=True)
     about |= {"armed": options.arm, "speed": options.speed}
     _tell(results, about, options)
     return PASSED if report.passed(results) else FAILED

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import NamedTuple, TypeAlias
@@ -65,7 +65,7 @@ def suite(terms: Terms) -> list[Item]:
     ]
 
 
-def perform(subject: Subject, terms: Terms) -> Iterator[Result]:
+def perform(subject: Subject, terms: Terms) -> Generator[Result, None, None]:
     """Yields the results as they are found; leaves the drive as it was, but for being at rest.
 
     Raises BusError where there is no drive, where somebody drives it, or where the bus is lost.

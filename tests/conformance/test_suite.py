@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from types import MappingProxyType
 
 import pytest
@@ -19,7 +19,7 @@ from hilbed.conformance.expected import ALLOWED, COMMANDS, after
 from hilbed.conformance.subject import Subject
 from hilbed.conformance.suite import Terms, perform
 from hilbed.drive.desk import Desk
-from hilbed.types import BusError
+from hilbed.types import BusError, Frame
 from tests.conformance.rig import BITRATE, NODE, drive, examined, failed, objects
 
 STATES = (
@@ -256,3 +256,27 @@ def test_a_drive_that_falls_silent_is_told() -> None:
     desk.tick = lambda *_: []  # type: ignore[method-assign]
     with pytest.raises(BusError, match="05040000"):
         list(results)
+
+
+def test_an_interrupt_while_the_wheel_turns_leaves_it_at_rest_with_its_settings() -> None:
+    desk = drive()
+    before = {where: objects(desk)[where] for where in SAME}
+    tick, interrupts = desk.tick, [KeyboardInterrupt()]
+
+    def interrupted(t: int, frames: Iterable[Frame]) -> list[Frame]:
+        if abs(desk.shaft.speed) > 0.8 and interrupts:
+            raise interrupts.pop()
+        return tick(t, frames)
+
+    desk.tick = interrupted  # type: ignore[method-assign]
+    end = on_the_wire(desk, BITRATE)
+    subject = Subject(end.link, Node("under test", NODE, load_table("hilbed402")))
+    with pytest.raises(KeyboardInterrupt):
+        list(perform(subject, Terms(True, 1.0, BITRATE, True)))
+    assert desk.shaft.speed == pytest.approx(0.0, abs=1e-3)
+    assert not desk.firmware.bridge_enabled
+    after_it = {where: objects(desk)[where] for where in SAME}
+    ignored = (key(0x1003, 0), key(0x1A00, 2), key(0x1A00, 3))
+    assert {w: v for w, v in after_it.items() if w not in ignored} == {
+        w: v for w, v in before.items() if w not in ignored
+    }
