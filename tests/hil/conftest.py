@@ -13,6 +13,14 @@ from tests.hil.processes import VCAN
 from tests.hil.witness import Candump
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest looks who has which mark
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks everything in this folder."""
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker(pytest.mark.hil)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def vcan0() -> None:
     """Skips where there is no bus."""

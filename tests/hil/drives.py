@@ -8,7 +8,7 @@ import time
 
 import can
 
-from tests.hil.processes import VCAN
+from tests.hil.processes import VCAN, Process
 
 COUNTS_PER_TURN = 66_000
 PATIENCE = 60.0
@@ -23,20 +23,19 @@ class Probe:
     def close(self) -> None:
         self.bus.shutdown()
 
-    def await_frame(self, identifier: int, least: float = 0.0) -> can.Message:
-        """Waits for a frame with this identifier; least: rad/s that it must tell of, if it is a TPDO1."""
+    def await_frame(self, identifier: int, least: float = 0.0, process: Process | None = None) -> can.Message:
+        """Waits for a frame with this identifier, as long as `process` runs.
+
+        least: rad/s that it must tell of, if it is a TPDO1.
+        """
         deadline = time.monotonic() + PATIENCE
-        while time.monotonic() < deadline:
+        while time.monotonic() < deadline and (process is None or process.poll() is None):
             message = self.bus.recv(1.0)
             if message is None or message.arbitration_id != identifier or message.is_extended_id:
                 continue
             if not least or pdo_speed(bytes(message.data)) >= least:
                 return message
-        raise AssertionError(f"no such {identifier:03X} on {VCAN} within {PATIENCE:g} s")
-
-    def await_speed(self, node: int, least: float) -> None:
-        """Waits until TPDO1 of a drive tells of at least this speed (rad/s)."""
-        self.await_frame(0x180 + node, least)
+        raise AssertionError(f"no such {identifier:03X} on {VCAN} within {PATIENCE:g} s, or its sender ended")
 
     def read(self, node: int, index: int, sub: int = 0) -> int:
         """Reads an object of at most four bytes, as a signed number."""

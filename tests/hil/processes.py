@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager, suppress
 
 VCAN = "vcan0"
 ON_VCAN = ("-i", "socketcan", "-c", VCAN)
-_PATIENT = ("realtime.tolerance=10", "realtime.give_up=60", "bus.silent_after=5", "period=0.1")
+_PATIENT = ("realtime.tolerance=10", "realtime.give_up=60", "bus.silent_after=5", "period=0.2")
 REALTIME = ("--realtime", *(word for value in _PATIENT for word in ("--set", value)))
 """A user-mode kernel has one processor for all: a late cycle still sends its commands."""
 

@@ -13,8 +13,6 @@ from tests.hil.processes import ON_VCAN, REALTIME, Process, drive, on_the_bus, r
 from tests.hil.scenarios import short
 from tests.hil.witness import Candump, Seen
 
-pytestmark = pytest.mark.hil
-
 LEFT, CONTROLLER = 1, 127
 CRUISE = 3.0  # rad/s at least
 ALLOWED = 0.1  # s beside consumer time and ramp
@@ -34,7 +32,7 @@ def test_a_drive_stops_when_the_controller_is_killed(candump: Candump, probe: Pr
     run = ("run", str(short(tmp_path)), *ON_VCAN, *REAL, *LONG, "--out", str(tmp_path / "run"))
     with on_the_bus(drive(LEFT)) as (left,):
         with running("hilbed", *run) as controller:
-            probe.await_speed(LEFT, CRUISE)
+            probe.await_frame(0x180 + LEFT, CRUISE, controller)
             probe.write_u16(LEFT, SYNC_TIMEOUT, 0)  # which would be quicker than the heartbeat's consumer
             controller.kill()
         watch(probe)

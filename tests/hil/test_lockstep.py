@@ -11,8 +11,6 @@ from tests.hil.scenarios import short, verdict
 from tests.hil.witness import Candump
 from tests.program.hilbed import hilbed
 
-pytestmark = pytest.mark.hil
-
 LEFT, RIGHT = 1, 2
 SERVICES = (0x080, 0x180, 0x280, 0x380, 0x580, 0x700)  # of a drive: EMCY, TPDOs, SDO answers, heartbeat
 SENDERS = {f"{base + node:03X}": node for node in (LEFT, RIGHT) for base in SERVICES}
@@ -20,11 +18,12 @@ SENDERS = {f"{base + node:03X}": node for node in (LEFT, RIGHT) for base in SERV
 
 @pytest.fixture(scope="module")
 def on_the_wire(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return run(tmp_path_factory.mktemp("wire"))
+    """The same on the simulated wire alone; nothing is recorded but its hashes."""
+    return run(tmp_path_factory.mktemp("wire"), "--record", "none")
 
 
 def run(folder: Path, *options: str) -> Path:
-    """Runs the scenario with `record: all`; returns the run folder."""
+    """Runs the scenario; returns the run folder."""
     ended = hilbed("run", short(folder), "--out", folder / "run", *options)
     assert ended.status == 0, ended.err
     return folder / "run"
@@ -49,7 +48,7 @@ def test_candump_has_seen_what_the_log_says(on_the_wire: Path, candump: Candump,
     carried = run(tmp_path, *ON_VCAN)
     frames = logged(carried)
     assert len(frames) > 300
-    assert [seen.frame for seen in candump.seen()] == frames == logged(on_the_wire)
+    assert [seen.frame for seen in candump.seen()] == frames
     assert verdict(carried)["hash"] == verdict(on_the_wire)["hash"]
 
 

@@ -15,8 +15,6 @@ from canopen.profiles.p402 import BaseNode402
 import firmware_sim
 from tests.hil.processes import VCAN, drive, on_the_bus
 
-pytestmark = pytest.mark.hil
-
 NODE, MASTER = 5, 127
 EDS = Path(firmware_sim.__file__).with_name("hilbed402.eds")
 TURN = 66_000  # counts
@@ -45,12 +43,12 @@ class Master:
 
     def heartbeat(self) -> None:
         """Sends one of the master's own."""
-        self.network.send_message(0x700 + MASTER, [OPERATIONAL])
+        self.network.send_message(0x700 + MASTER, bytes([OPERATIONAL]))
 
     def enable(self) -> None:
         """Leads the drive to `operation enabled` in profiled velocity, all by PDO, with SYNC at 100 Hz."""
         node = self.node
-        node.setup_402_state_machine()
+        node.setup_402_state_machine()  # type: ignore[no-untyped-call]
         node.nmt.state = "OPERATIONAL"
         self.network.sync.start(0.01)
         self.ends.callback(self.network.sync.stop)
@@ -129,7 +127,7 @@ def test_boots_enables_drives_and_stops(master: Master) -> None:
 
 def test_pdo_remapped_by_the_library(master: Master) -> None:
     node = master.node
-    node.tpdo.read()
+    node.tpdo.read()  # type: ignore[no-untyped-call]
     mapping = node.tpdo[2]
     mapping.clear()
     for name in (LINK, POSITION):
@@ -161,5 +159,5 @@ def test_a_silent_master_is_a_fault_that_is_told_and_can_be_reset(master: Master
     assert node.sdo["Error history"][1].raw & 0xFFFF == 0x8130
     master.heartbeat()
     node.rpdo[1][TARGET].raw = 0
-    node.reset_from_fault()
+    node.reset_from_fault()  # type: ignore[no-untyped-call]
     assert node.state == "OPERATION ENABLED"

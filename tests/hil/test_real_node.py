@@ -11,22 +11,25 @@ from tests.hil.processes import ON_VCAN, REALTIME, drive, on_the_bus
 from tests.hil.scenarios import short, verdict
 from tests.program.hilbed import hilbed
 
-pytestmark = pytest.mark.hil
-
 LEFT = 1
 LIMIT, RADIUS = 0.1, 0.1  # m/s, m
-ARMED = (*REALTIME, "--arm", "--record", "signals", "--set", "nodes.left=real", "--set", "duration=2")
+TOO_LATE = 0.5  # s; the drive stops at a heartbeat that is 0.6 s late
+PACED = (*ON_VCAN, *REALTIME, "--set", "duration=2")
+REAL = ("--arm", "--record", "signals", "--set", "nodes.left=real")
 
 
 def test_the_simulated_wheel_follows_a_real_drive_and_a_twin_is_refused(tmp_path: Path) -> None:
     scenario = short(tmp_path)
     with on_the_bus(drive(LEFT)):
-        ended = hilbed("run", scenario, *ON_VCAN, *ARMED, "--out", tmp_path / "real")
+        ended = hilbed("run", scenario, *PACED, *REAL, "--out", tmp_path / "real")
         assert ended.status == 0, ended
-        twin = hilbed("run", scenario, *ON_VCAN, *REALTIME, "--out", tmp_path / "twin")
+        twin = hilbed("run", scenario, *PACED, "--record", "none", "--out", tmp_path / "twin")
+    late = verdict(tmp_path / "real")["realtime"]["lateness"]["worst"]
+    if late > TOO_LATE:
+        pytest.skip(f"this machine is too busy for real time: a cycle began {late:.2f} s late")
     signals = np.load(tmp_path / "real" / "signals.npz")
     left = signals["drive/left/speed"]
-    print(f"left {left[-1]:.3f} rad/s, limit {LIMIT / RADIUS:.3f} rad/s")
+    assert left.max() == pytest.approx(LIMIT / RADIUS, rel=0.1), ended.out
     assert left[-1] == pytest.approx(signals["drive/left/speed_measured"][-1], rel=0.05)
     assert twin.status == 7
     reason = verdict(tmp_path / "twin")["reason"]
