@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hilbed import collector, loop, verdict, yaml12
-from hilbed.build import BOOT, Bench, build
+from hilbed.build import Bench, build
 from hilbed.build.elsewhere import check_armed
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
@@ -173,8 +173,8 @@ def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:
         from hilbed.can.dbc import dbc
 
         folder.write(DBC, dbc(bench.nodes))
-    sinks: list[Sink] = [McapLog(path / "log.mcap", BOOT, setting), Frames(path / "frames")]
-    return [CandumpLog(path / "can.log", BOOT), *sinks] if bench.drives else sinks
+    sinks: list[Sink] = [McapLog(path / "log.mcap", bench.power_on, setting), Frames(path / "frames")]
+    return [CandumpLog(path / "can.log", bench.power_on), *sinks] if bench.drives else sinks
 
 
 def _path(bench: Bench, loaded: Loaded) -> list[tuple[float, float]]:

@@ -14,7 +14,7 @@ from hilbed.scene import BeaconSpec
 from hilbed.types import Array, Nanos, Pose
 
 BOOT: Nanos = SECOND
-"""How long before t = 0 the drives are powered; time stamps in can.log and log.mcap are t plus this."""
+"""How long before t = 0 simulated drives are powered."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,8 @@ class Bench:
     start: pose at t = 0; kinds: what its sensors measure, with the number of components; boot: brings the
     drives up, ends at t = 0; stop: brings them to rest from the time given; ticks: the plant's log from a row
     on; tick: ns; events: what the drives did that they should not have; close: gives back what it holds;
-    nodes: the drives on the bus; pace: waits for a cycle's beginning, returns whether its commands may still
+    nodes: the drives on the bus; power_on: how long before t = 0 they are powered, time stamps in can.log and
+    log.mcap are t plus this; pace: waits for a cycle's beginning, returns whether its commands may still
     be sent; late: answers of each drive that did not come within their cycle; account: what verdict.json says
     of the bus besides.
     """
@@ -45,3 +46,4 @@ class Bench:
     pace: Callable[[Nanos], bool] = at_once
     late: Callable[[], dict[str, int]] = dict
     account: Callable[[], dict[str, Any]] = dict
+    power_on: Nanos = BOOT

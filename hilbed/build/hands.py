@@ -48,13 +48,15 @@ class Hands:
     period: Nanos
     wake: Sequence[Callable[[Nanos], None]] = ()
     faults: Faults | None = None
+    power_on: Nanos = BOOT
 
     def boot(self) -> None:
-        """Brings the drives up, from `BOOT` before t = 0 on."""
+        """Brings the drives up, from `power_on` before t = 0 on."""
+        start = -self.power_on
         for wake in self.wake:
-            wake(-BOOT)
-        self.carriage.start(-BOOT)
-        self.master.boot(self._pump, -BOOT, 0)
+            wake(start)
+        self.carriage.start(start)
+        self.master.boot(self._pump, start, 0)
         self.plant.start()
 
     def _pump(self, t: Nanos) -> Nanos:

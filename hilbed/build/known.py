@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from hilbed.build.bench import BOOT
 from hilbed.build.minds import Surroundings
 from hilbed.can.node import Node
 from hilbed.can.specs import resolve
+from hilbed.clock import SECOND
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.ports import Reference
 from hilbed.scenario.model import Scenario
-from hilbed.types import Pose
+from hilbed.types import Nanos, Pose
 
 
 def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
@@ -19,6 +21,12 @@ def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
     if scenario.robot.start is not None:
         return Pose(*scenario.robot.start)
     return Pose(0.0, 0.0, 0.0) if reference is None else reference.at(0).pose
+
+
+def boot_of(scenario: Scenario) -> Nanos:
+    """Returns how long before t = 0 the drives are powered: by so much the logs' time is ahead of t."""
+    away = any(node.kind != "simulated" for node in scenario.nodes.values())
+    return BOOT if scenario.realtime is None or not away else scenario.realtime.boot * SECOND
 
 
 def surroundings(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings:

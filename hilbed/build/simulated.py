@@ -14,7 +14,7 @@ from hilbed.build.axes import Workshop
 from hilbed.build.bench import Bench
 from hilbed.build.carriage import join
 from hilbed.build.hands import Hands
-from hilbed.build.known import nodes_of, start_of, surroundings
+from hilbed.build.known import boot_of, nodes_of, start_of, surroundings
 from hilbed.build.minds import make_controller, make_estimator
 from hilbed.can.base import CanBase
 from hilbed.can.faults import Faults
@@ -112,13 +112,14 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
 
     flush = [sensor.flush for sensor in sensors]
     wake = elsewhere.wakers(nodes, carriage, terminals)
-    hands = Hands(Master(nodes, port, period), base, plant, carriage, flush, tick, period, wake, faults)
+    master, power_on = Master(nodes, port, period), boot_of(scenario)
+    hands = Hands(master, base, plant, carriage, flush, tick, period, wake, faults, power_on)
     kinds = {"azimuth": 1} if sensors else {}
     return Bench(
         rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
         hands.boot, hands.stop, plant.ticks, hands.events, closing.close, nodes,
         carriage.due, lambda: elsewhere.late(base.late, terminals),
-        lambda: {"nodes": {node.name: node.kind for node in nodes}, **carriage.account()},
+        lambda: {"nodes": {node.name: node.kind for node in nodes}, **carriage.account()}, power_on,
     )  # fmt: skip
 
 

@@ -16,6 +16,9 @@ from hilbed.types import BusError, Nanos
 
 BOOT_UP_TIMEOUT: Nanos = 300 * MILLISECOND
 STATE_TIMEOUT: Nanos = 300 * MILLISECOND
+SDO_TIMEOUT: Nanos = 100 * MILLISECOND
+SLOWER = 5
+"""By so much longer is waited for a drive that is not in this process: adapters and machines may be busy."""
 SETTLING: Nanos = 20 * MILLISECOND
 """A drive that finds something wrong with its supply or motor says so within this time of being enabled."""
 
@@ -52,14 +55,14 @@ class Master:
         link.pause(SETTLING)
         strangers.refuse(link, heard, self._nodes)
         for node in self._nodes:
-            _check_enabled(SdoClient(link, node.name, node.id), node)
+            _check_enabled(_sdo(link, node), node)
         link.pause(ready - link.t)
         return link.t
 
     def _bring_up(self, link: Link, heard: nmt.HeartbeatConsumer, twins: Twins, axes: Sequence[Node]) -> None:
         """Identifies, configures, starts and enables a node, all its axes at once."""
         node = axes[0]
-        sdo = SdoClient(link, node.name, node.id)
+        sdo = _sdo(link, node)
         _identify(sdo, node)  # by then the boot-up of power-on and that of the reset have come
         twins.watch(node)
         before = sdo.asked
@@ -68,7 +71,7 @@ class Master:
         for axis in axes:
             _await_mode(link, sdo, axis)
         link.send(nmt.command(nmt.START, node.id))
-        if not link.until(lambda: heard.states.get(node.id) == nmt.OPERATIONAL, STATE_TIMEOUT):
+        if not link.until(lambda: heard.states.get(node.id) == nmt.OPERATIONAL, _for(node, STATE_TIMEOUT)):
             state = nmt.STATE_NAMES.get(heard.states.get(node.id, -1), "silent")
             raise BusError(f"{node}: told to start, but its heartbeat (1017) says {state}")
         for axis in axes:
@@ -76,10 +79,19 @@ class Master:
         twins.check(node, sdo.asked - before)
 
 
+def _for(node: Node, timeout: Nanos) -> Nanos:
+    return timeout if node.kind == "simulated" else SLOWER * timeout
+
+
+def _sdo(link: Link, node: Node) -> SdoClient:
+    return SdoClient(link, node.name, node.id, _for(node, SDO_TIMEOUT))
+
+
 def _await_boot_up(link: Link, heard: nmt.HeartbeatConsumer, node: Node) -> None:
-    if not link.until(lambda: node.id in heard.boots, BOOT_UP_TIMEOUT):
+    timeout = _for(node, BOOT_UP_TIMEOUT)
+    if not link.until(lambda: node.id in heard.boots, timeout):
         raise BusError(
-            f"{node}: no boot-up message {0x700 + node.id:X} within {BOOT_UP_TIMEOUT // MILLISECOND} ms of "
+            f"{node}: no boot-up message {0x700 + node.id:X} within {timeout // MILLISECOND} ms of "
             "the NMT reset: is it powered and wired, with this node number and bit rate?"
         )
 
@@ -105,7 +117,7 @@ def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
     if "mode_display" not in node.table.objects:
         return
     entry = node.of("mode_display")
-    deadline = link.t + STATE_TIMEOUT
+    deadline = link.t + _for(node, STATE_TIMEOUT)
     while (shown := sdo.read(entry.index, entry.sub, entry.type)) != wanted:
         if link.t >= deadline:
             raise BusError(f"{node}: mode {wanted} was written, {entry.index:04X} still shows {shown}")
@@ -115,7 +127,7 @@ def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
 def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
     """Leads the drive to operation enabled, through a fault reset if need be."""
     control = node.of("controlword")
-    deadline = link.t + STATE_TIMEOUT
+    deadline = link.t + _for(node, STATE_TIMEOUT)
     while (state := cia402.state_of(_statusword(sdo, node))) != cia402.ENABLED and link.t < deadline:
         word = cia402.towards_enabled(state)
         if word == cia402.FAULT_RESET:  # acts on its rising edge

@@ -17,12 +17,14 @@ from hilbed.drive.probe import refuse_twin
 from hilbed.types import Frame, Nanos
 
 STATUS_PERIOD: Nanos = 200 * MILLISECOND
+PATIENCE = 1.0
+"""s that a slow adapter may take for a frame; a drive that answers late is of more use than one that ends."""
 
 
 def main(options: argparse.Namespace) -> int:
     """Does `hilbed drive`; returns the exit status. Raises ScenarioError, BusError."""
     build = build_of(options)
-    adapter = Adapter(options.interface, options.channel, options.bitrate)
+    adapter = Adapter(options.interface, options.channel, options.bitrate, patience=PATIENCE)
     try:
         return drive(build, adapter, options.status)
     finally:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hilbed.build import BOOT
+from hilbed.build.known import boot_of
 from hilbed.clock import SECOND
 from hilbed.record.folder import CAN, SCENARIO, SIGNALS
 from hilbed.replay.candump import read_log
@@ -41,8 +42,8 @@ def read_recording(folder: Path, settings: Sequence[str] = ()) -> Recording:
             )
     signals = _signals(folder / SIGNALS)
     log = read_log(folder / CAN)
-    frames = sorted(exact(log, signals), key=lambda received: received.t)
     loaded = load(str(folder / SCENARIO), settings)
+    frames = sorted(exact(log, signals, boot_of(loaded.scenario)), key=lambda received: received.t)
     return Recording(loaded, signals, tuple(received for received in frames if received.t > 0))
 
 
@@ -57,20 +58,20 @@ def _signals(path: Path) -> Signals:
     return signals
 
 
-def exact(log: Sequence[Received], signals: Signals) -> list[Received]:
+def exact(log: Sequence[Received], signals: Signals, power_on: Nanos = BOOT) -> list[Received]:
     """Returns frames of a log at the run's own time, to the nanosecond where the signals know it.
 
-    The log has microseconds from power-on; bus/t has the end of every frame. A frame that was put into the
-    log later keeps its microseconds.
+    The log has microseconds from power-on, which was `power_on` before t = 0; bus/t has the end of every
+    frame. A frame that was put into the log later keeps its microseconds.
     """
     known: dict[tuple[int, int], deque[Nanos]] = defaultdict(deque)
     if "bus/t" in signals and "bus/id" in signals:
         for end, identifier in zip(_nanos(signals["bus/t"]), signals["bus/id"].tolist(), strict=True):
-            known[max(end + BOOT, 0) // MICROSECOND, identifier].append(end)
+            known[max(end + power_on, 0) // MICROSECOND, identifier].append(end)
     frames = []
     for stamp, frame in log:
         ends_here = known.get((stamp // MICROSECOND, frame.id))
-        frames.append(Received(ends_here.popleft() if ends_here else stamp - BOOT, frame))
+        frames.append(Received(ends_here.popleft() if ends_here else stamp - power_on, frame))
     return frames
 
 
