@@ -100,5 +100,5 @@ class Witness(Protocol):
         ...
 
     def transfer(self, transfer: Transfer) -> None:
-        """Notes a frame that has crossed the bus."""
+        """Notes a frame that has crossed the bus, or an error frame with what it has cut off."""
         ...
