@@ -24,7 +24,8 @@ class BusSpec(Spec):
     bitrate: bit/s, one of CiA's; interface, channel: of the python-can bus to which the wire is joined, null
     for none. The interface hilbed, also meant by a channel alone, is the wire itself: python-can buses of
     this process join by can.Bus(interface="hilbed", channel=…). silent: hold (go on with what was heard
-    last), quick_stop (of all drives) or fail (the run); silent_after: s without a PDO of a drive.
+    last), quick_stop (of all drives) or fail (the run); silent_after: s without a PDO of a drive. Three lost
+    heartbeats are silence as well.
     """
 
     kind: Literal["wire"] = "wire"
