@@ -103,7 +103,7 @@ def test_what_is_recorded_does_not_change_the_run(demo: Path, tmp_path: Path, le
     ended = hilbed("run", "demo", *SHORT, "--record", level, "--out", tmp_path / "run")
     assert ended.status == 0, ended.err
     assert verdict(tmp_path / "run")["hash"] == verdict(demo)["hash"]
-    logs = {"log.mcap", "can.log", "frames"}
+    logs = {"log.mcap", "can.log", "bus.dbc", "frames"}
     absent = logs if level == "signals" else logs | {"signals.npz", "report.html"}
     assert {entry.name for entry in (tmp_path / "run").iterdir()} == CONTENT - absent
 
