@@ -10,7 +10,7 @@ from hilbed.clock import seconds
 from hilbed.types import BusError, Frame, Nanos, Received
 
 if TYPE_CHECKING:
-    from hilbed.can.wire import Wire
+    from hilbed.can.contests import Contests
 
 Listener = Callable[[Nanos, Frame], None]
 
@@ -39,7 +39,9 @@ class Port:
         "on_error", "on_sent", "recovers", "strict",
     )  # fmt: skip
 
-    def __init__(self, wire: Wire, name: str, number: int, on_frame: Listener | None, strict: bool) -> None:
+    def __init__(
+        self, wire: Contests, name: str, number: int, on_frame: Listener | None, strict: bool
+    ) -> None:
         self.name = name
         self.number = number
         self.accepted: Collection[int] | None = None

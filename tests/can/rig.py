@@ -7,8 +7,9 @@ from math import tau
 from firmware_sim.drive import Drive
 from hilbed.can.base import CanBase
 from hilbed.can.master import Master
+from hilbed.can.port import Port
 from hilbed.can.specs import BusSpec, NodeSpec, resolve
-from hilbed.can.wire import Port, Wire
+from hilbed.can.wire import Wire
 from hilbed.clock import MILLISECOND
 from hilbed.robots.diffdrive import DiffDrive, DiffDriveSpec
 from hilbed.types import Command, Frame, Nanos, Odometry, Transfer

@@ -14,8 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hilbed.can.link import Link
+from hilbed.can.port import Port
 from hilbed.can.sdo import SdoClient
-from hilbed.can.wire import Port, Wire
+from hilbed.can.wire import Wire
 from hilbed.clock import MILLISECOND
 from hilbed.types import BusError, Frame, Nanos
 

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from hilbed.can.arbitration import arbitration
 from hilbed.can.frame_length import frame_bits
+from hilbed.can.port import Port
 from hilbed.can.statistics import Statistics, load
-from hilbed.can.wire import Port, Wire
+from hilbed.can.wire import Wire
 from hilbed.types import BusError, Frame, Nanos, Transfer
 
 BIT = 2000  # ns at 500 kbit/s
