@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -14,10 +15,11 @@ from tests.hil.scenarios import short
 from tests.hil.witness import Candump, Seen
 
 LEFT, CONTROLLER = 1, 127
-CRUISE = 3.0  # rad/s at least
+CRUISE = 2.0  # rad/s at least
 ALLOWED = 0.1  # s beside consumer time and ramp
+TOO_LATE = 0.5  # s; the drive stops at a heartbeat that is 0.6 s late
 SYNC_TIMEOUT, CONSUMER, DECELERATION, SPEED, THRESHOLD = 0x2002, 0x1016, 0x6085, 0x606C, 0x606F
-REAL = (*REALTIME, "--arm", "--record", "none", "--set", "nodes.left=real", "--set", "real_speed_limit=0.5")
+REAL = (*REALTIME, "--arm", "--record", "none", "--set", "nodes.left=real", "--set", "real_speed_limit=0.3")
 LONG = ("--set", "duration=120", "--set", "reference.acceleration=0.5")
 
 
@@ -32,7 +34,7 @@ def test_a_drive_stops_when_the_controller_is_killed(candump: Candump, probe: Pr
     run = ("run", str(short(tmp_path)), *ON_VCAN, *REAL, *LONG, "--out", str(tmp_path / "run"))
     with on_the_bus(drive(LEFT)) as (left,):
         with running("hilbed", *run) as controller:
-            probe.await_frame(0x180 + LEFT, CRUISE, controller)
+            await_cruise(probe, controller, candump)
             probe.write_u16(LEFT, SYNC_TIMEOUT, 0)  # which would be quicker than the heartbeat's consumer
             controller.kill()
         watch(probe)
@@ -41,7 +43,7 @@ def test_a_drive_stops_when_the_controller_is_killed(candump: Candump, probe: Pr
         stands = radians(probe.read(LEFT, THRESHOLD))
         skip_if_starved(left)
     seen = candump.seen()
-    alive = max(one.at for one in seen if one.frame.startswith(f"{0x700 + CONTROLLER:03X}#"))
+    alive = heartbeats(seen)[-1]
     speeds = [(at - alive, speed) for at, speed in told(seen) if at > alive]
     speed = max(speed for _, speed in speeds)
     stopped = min(at for at, _ in speeds if all(abs(v) <= stands for later, v in speeds if later >= at))
@@ -50,6 +52,23 @@ def test_a_drive_stops_when_the_controller_is_killed(candump: Candump, probe: Pr
           f"(consumer {1e3 * consumer:.0f} ms, ramp {1e3 * ramp:.0f} ms)")  # fmt: skip
     assert speed > CRUISE
     assert consumer < stopped < consumer + ramp + ALLOWED
+
+
+def await_cruise(probe: Probe, controller: Process, candump: Candump) -> None:
+    """Waits until the robot drives; a machine too busy for the controller's heartbeats says nothing."""
+    try:
+        probe.await_frame(0x180 + LEFT, CRUISE, controller)
+    except AssertionError:
+        beats = heartbeats(candump.seen())
+        gap = max((later - earlier for earlier, later in pairwise(beats)), default=0.0)
+        if gap > TOO_LATE:
+            pytest.skip(f"this machine is too busy for real time: {gap:.2f} s between two heartbeats")
+        raise
+
+
+def heartbeats(seen: list[Seen]) -> list[float]:
+    """Returns when the controller has said that it lives."""
+    return [one.at for one in seen if one.frame.startswith(f"{0x700 + CONTROLLER:03X}#")]
 
 
 def watch(probe: Probe) -> None:

@@ -29,7 +29,7 @@ class Master:
 
     def __init__(self, network: canopen.Network) -> None:
         self.network = network
-        self.node = BaseNode402(NODE, str(EDS))
+        self.node = BaseNode402(NODE, str(EDS))  # type: ignore[no-untyped-call]
         network.add_node(self.node)
         self.ends = ExitStack()
         self.ends.callback(network.__delitem__, NODE)
