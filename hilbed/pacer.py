@@ -24,7 +24,8 @@ class RealtimeSpec(Spec):
 
     overrun: of a cycle that begins late by more than `tolerance` (s, half a period by default): skip (it is
     counted, its commands are not sent to others, the schedule is kept) or fail (the run); give_up: s; a run
-    that begins a cycle so late has lost real time for good and fails; boot: whole s that drives elsewhere have to come up.
+    that begins a cycle so late has lost real time for good and fails; boot: whole s that drives elsewhere
+    have to come up.
     """
 
     overrun: Literal["skip", "fail"] = "skip"
