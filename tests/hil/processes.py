@@ -10,9 +10,9 @@ from contextlib import ExitStack, contextmanager, suppress
 
 VCAN = "vcan0"
 ON_VCAN = ("-i", "socketcan", "-c", VCAN)
-_PATIENT = ("realtime.tolerance=10", "realtime.give_up=60", "bus.silent_after=5", "period=0.2")
+_PATIENT = ("realtime.tolerance=10", "realtime.give_up=60", "bus.silent_after=5", "period=0.05")
 REALTIME = ("--realtime", *(word for value in _PATIENT for word in ("--set", value)))
-"""A user-mode kernel has one processor for all: a late cycle still sends its commands."""
+"""A user-mode kernel has one processor for all processes: a late cycle still sends its commands."""
 
 Process = subprocess.Popen[str]
 

@@ -13,7 +13,7 @@ from tests.program.hilbed import hilbed
 
 LEFT = 1
 LIMIT, RADIUS = 0.1, 0.1  # m/s, m
-TOO_LATE = 0.5  # s; the drive stops at a heartbeat that is 0.6 s late
+TOO_LATE = 0.2  # s; the drive stops at a heartbeat that is 0.25 s late
 PACED = (*ON_VCAN, *REALTIME, "--set", "duration=2")
 REAL = ("--arm", "--record", "signals", "--set", "nodes.left=real")
 
