@@ -74,8 +74,8 @@ class SimulatedAxis:
     """
 
     __slots__ = (
-        "_make", "_outbox", "coulomb", "current", "duty", "encoder", "firmware", "name", "port", "speed_ref",
-        "supply_current", "target", "train",
+        "_followed", "_make", "_outbox", "coulomb", "current", "duty", "encoder", "firmware", "name", "port",
+        "speed_ref", "supply_current", "target", "train",
     )  # fmt: skip
 
     def __init__(self, name: str, make: Make, train: Train, encoder: Encoder, attach: Attach) -> None:
@@ -90,6 +90,7 @@ class SimulatedAxis:
         self.coulomb = train.coulomb
         self.target: float | None = None
         self.current = self.duty = self.speed_ref = self.supply_current = 0.0
+        self._followed = 0.0  # what the firmware's reference was when `speed_ref` was made of it
 
     def present(self, angle: float, supply: int) -> None:
         """Has its firmware here, which reads its pins in the tick itself."""
@@ -109,7 +110,9 @@ class SimulatedAxis:
         duty = pins.duty(self._tick(t, angle, pins.current(train.current), supply))
         torque = train.step(duty, firmware.bridge_enabled, volts, speed)
         self.duty = duty
-        self.speed_ref = pins.speed(pins.micro(firmware.speed_ref))
+        if firmware.speed_ref != self._followed:
+            self._followed = firmware.speed_ref
+            self.speed_ref = pins.speed(pins.micro(self._followed))
         self.current = train.current
         self.supply_current = train.supply_current
         return torque
