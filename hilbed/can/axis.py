@@ -19,7 +19,7 @@ _SLOTS = {
 }
 STATE_BITS = 0x6F
 """Of the statusword: those that tell the states apart."""
-_ENABLED = 0x27  # what boot leaves behind
+ENABLED_BITS = 0x27  # what boot leaves behind
 
 Route = tuple["Axis", Callable[[bytes], tuple[Any, ...]], tuple[int, ...], bool]
 """Where a TPDO goes: axis, how to unpack it, the slot of each of its values, whether a position is in it."""
@@ -57,8 +57,8 @@ class Axis:
     def __init__(self, node: Node) -> None:
         table = node.table
         self.node = node
-        self.values: list[Any] = [_ENABLED, nan, 0, nan, 0]
-        self.state = _ENABLED
+        self.values: list[Any] = [ENABLED_BITS, nan, 0, nan, 0]
+        self.state = ENABLED_BITS
         self.fresh = 0
         self.position: int | None = None
         self.heard: Nanos = 0

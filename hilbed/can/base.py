@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from math import isfinite
 
 from hilbed.can import cia402, nmt
-from hilbed.can.axis import STATE_BITS, STATUS, Axis, Route
+from hilbed.can.axis import ENABLED_BITS, STATE_BITS, STATUS, Axis, Route
 from hilbed.can.cob import CONTROLLER_ID, SYNC_FRAME
 from hilbed.can.ears import Ears
 from hilbed.can.node import Node
@@ -38,6 +38,8 @@ class CanBase:
         self._robot = robot
         self._bus = bus
         self._axes = tuple(map(Axis, nodes))
+        self._real = tuple(axis for axis in self._axes if axis.node.kind == "real")
+        self._stopping = False
         self.ears = Ears(self._axes)
         self._stations = stations(self._axes)
         self._routes: dict[int, tuple[Route, ...]] = {}
@@ -58,7 +60,8 @@ class CanBase:
         """Returns what the drives measured at the last SYNC that all of them have answered.
 
         Stamped with that SYNC's time (with `t` before the first); frames of any content are survived and
-        counted. BusError where a drive is silent and the policy is to fail.
+        counted. BusError where a drive is silent and the policy is to fail, or a real one has stopped by
+        itself: nothing that is simulated would tell.
         """
         routes, ears = self._routes, self.ears
         for received in self._bus.recv(t):
@@ -110,6 +113,7 @@ class CanBase:
 
         By SDO, which acts on arrival; and by PDO, so that the next SYNC finds no older order to go on.
         """
+        self._stopping = True
         for station in self._stations:
             for frame in station.stop():
                 self._bus.send(t, frame)
@@ -162,7 +166,14 @@ class CanBase:
         return Odometry(t if self._sampled is None else self._sampled, distance, turn, v, w, signals)
 
     def _watch(self, t: Nanos) -> None:
-        """Finds drives that leave two SYNCs unanswered for longer than allowed, or three heartbeats out."""
+        """Finds drives that leave two SYNCs unanswered for longer than allowed, or three heartbeats out.
+
+        And real drives that are no longer enabled though nobody has stopped them.
+        """
+        for axis in self._real:
+            if axis.state != ENABLED_BITS and not self._stopping:
+                state = cia402.state_of(axis.values[STATUS])
+                raise BusError(f"t = {seconds(t):g} s: {axis.node} has stopped by itself: {state}")
         before = self._sync_before
         if before is None:
             return

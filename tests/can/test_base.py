@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hilbed.can.specs import BusSpec
+from hilbed.can.specs import BusSpec, NodeSpec
 from hilbed.clock import MILLISECOND
 from hilbed.types import BusError, Command, Diverged, DriveSignals, Frame
 from tests.can.rig import COUNTS, PERIOD, TwoDrives
@@ -218,6 +218,25 @@ def test_a_fault_is_reported() -> None:
     said = [event.text for event in bench.base.ears.events]
     assert any(text.startswith("emergency 2") for text in said)
     assert any(text.startswith("fault (statusword") for text in said)
+
+
+def test_a_real_drive_that_stops_by_itself_ends_the_run() -> None:
+    bench = TwoDrives(nodes={"left": NodeSpec(kind="real")})
+    bench.boot()
+    bench.shafts[0].current = 30_000
+    bench.cycle(0, Command(0.2, 0.0))
+    with pytest.raises(BusError, match=r"left \(node 1\) has stopped by itself: fault"):
+        bench.base.read(PERIOD)
+
+
+def test_a_real_drive_that_is_told_to_stop_is_no_surprise() -> None:
+    bench = TwoDrives(nodes={"left": NodeSpec(kind="real")})
+    bench.boot()
+    bench.cycle(0, Command(0.2, 0.0))
+    bench.base.stop(PERIOD)
+    for cycle in range(1, 60):
+        bench.cycle(cycle * PERIOD, Command(0.2, 0.0))
+    assert "left" not in bench.base.moving
 
 
 def test_a_drive_that_restarts_is_noticed() -> None:
