@@ -20,7 +20,8 @@ _SERVICES = {
     0x400: "RPDO3", 0x480: "TPDO4", 0x500: "RPDO4", 0x580: "SDO answer", 0x600: "SDO request",
     0x700: "heartbeat",
 }  # fmt: skip
-_HEAD = ("identifier", "", "frames", "period [ms]", "queueing", "arbitration", "transfer", "error frames")
+_WORDS = ("identifier", "")
+_NUMBERS = ("frames", "period [ms]", "queueing", "arbitration", "transfer", "error frames")
 
 Times = np.ndarray[Any, Any]
 
@@ -32,7 +33,9 @@ def frames(run: Run) -> str | None:
         return None
     identifiers = np.unique(signals["bus/id"][signals["bus/t"] >= 0]).tolist()
     rows = "".join(_row(run, identifier) for identifier in identifiers)
-    head = "".join(f"<th>{word}</th>" for word in _HEAD)
+    head = "".join(f"<th>{word}</th>" for word in _WORDS) + "".join(
+        f'<th class="number">{word}</th>' for word in _NUMBERS
+    )
     table = f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
     return f'<div class="scroll">{table}</div>'
 
