@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 from functools import cache
 from pathlib import Path
+from shutil import rmtree
 from tempfile import mkdtemp
 
 from hilbed.record.folder import RunFolder
@@ -16,6 +18,8 @@ SHORT = ("duration=3", "disturbances=[{kind: load_torque, drive: left, start: 1,
 @cache
 def recorded(*settings: str) -> Path:
     """Returns the folder of a three-second demo with `settings` laid over it; not to be written to."""
-    folder = Path(mkdtemp(prefix="hilbed-run-")) / "run"
+    place = Path(mkdtemp(prefix="hilbed-run-"))
+    atexit.register(rmtree, place, ignore_errors=True)
+    folder = place / "run"
     perform(load("demo", [*SHORT, *settings], seed=3), RunFolder(folder))
     return folder
