@@ -17,6 +17,7 @@ from tests.hil.witness import Candump, Seen
 LEFT, RIGHT, CONTROLLER = 1, 2, 127
 CRUISE = 2.0  # rad/s at least
 ALLOWED = 0.1  # s beside consumer time and ramp
+STARVED = 0.05  # s; a drive is asked every 5 ms
 TOO_LATE = 0.2  # s; a drive stops at a heartbeat that is 0.25 s late
 SYNC_TIMEOUT, CONSUMER, DECELERATION, SPEED, THRESHOLD = 0x2002, 0x1016, 0x6085, 0x606C, 0x606F
 REAL = ("--arm", "--record", "none", "--set", "nodes.left=real", "--set", "nodes.right=real")
@@ -32,7 +33,7 @@ def probe() -> Iterator[Probe]:
 
 def test_drives_stop_when_the_controller_is_killed(candump: Candump, probe: Probe, tmp_path: Path) -> None:
     run = ("run", str(short(tmp_path)), *ON_VCAN, *REALTIME, *REAL, *LONG, "--out", str(tmp_path / "run"))
-    with on_the_bus(drive(LEFT), drive(RIGHT)) as drives:
+    with on_the_bus(drive(LEFT), drive(RIGHT)):
         with running("hilbed", *run) as controller:
             await_cruise(probe, controller, candump)
             for node in (LEFT, RIGHT):  # or the missing SYNC stops them before the missing heartbeat does
@@ -42,7 +43,6 @@ def test_drives_stop_when_the_controller_is_killed(candump: Candump, probe: Prob
         consumer = (probe.read(LEFT, CONSUMER, 1) & 0xFFFF) / 1000
         deceleration = radians(probe.read(LEFT, DECELERATION))
         stands = radians(probe.read(LEFT, THRESHOLD))
-        skip_if_starved(drives)
     seen = candump.seen()
     alive = heartbeats(seen)[-1]
     for node in (LEFT, RIGHT):
@@ -53,7 +53,10 @@ def test_drives_stop_when_the_controller_is_killed(candump: Candump, probe: Prob
         print(f"node {node} from {speed:.2f} rad/s: standstill {1e3 * stopped:.0f} ms after the controller's "
               f"last heartbeat (consumer {1e3 * consumer:.0f} ms, ramp {1e3 * ramp:.0f} ms)")  # fmt: skip
         assert speed > CRUISE
-        assert consumer < stopped < consumer + ramp + ALLOWED
+        assert consumer < stopped
+        if stopped >= consumer + ramp + ALLOWED:
+            skip_if_starved([at for at, _ in speeds if at <= stopped])
+        assert stopped < consumer + ramp + ALLOWED
 
 
 def await_cruise(probe: Probe, controller: Process, candump: Candump) -> None:
@@ -90,10 +93,8 @@ def told(seen: list[Seen], node: int) -> Iterator[tuple[float, float]]:
             yield at, radians(sdo_number(bytes.fromhex(data)))
 
 
-def skip_if_starved(drives: list[Process]) -> None:
-    """Ends the drives; a machine that has kept them from ticking says nothing about when they stop."""
-    for process in drives:
-        process.terminate()
-        _, account = process.communicate(timeout=60)
-        if "dropped" in account:
-            pytest.skip(f"this machine is too busy for a drive in real time: {account.strip()}")
+def skip_if_starved(answers: list[float]) -> None:
+    """A machine that keeps a drive from answering for longer than a few polls keeps it from stopping, too."""
+    gap = max((later - earlier for earlier, later in pairwise(answers)), default=0.0)
+    if gap > STARVED:
+        pytest.skip(f"this machine is too busy for a drive in real time: {gap:.3f} s between two answers")
