@@ -28,7 +28,7 @@ from hilbed.record.row import Sink
 from hilbed.scenario.load import Loaded, resolved
 from hilbed.scenario.model import Scenario
 from hilbed.scenario.own_files import pack
-from hilbed.types import BusError, Cycle, Diverged, HilbedError, Nanos
+from hilbed.types import BusError, Cycle, Diverged, HilbedError, Interrupted, Nanos
 from hilbed.versions import versions
 
 PASSED, FAILED, INTERRUPTED, BROKEN, BUS = 0, 1, 2, 3, 7
@@ -79,6 +79,8 @@ class _Ending:
             step()
         except BusError as error:
             self.set(BUS, str(error))
+        except Interrupted as error:
+            self.set(INTERRUPTED, str(error))
         except Diverged as error:
             self.set(BROKEN, str(error))
         except HilbedError as error:  # disk full, a camera's process lost
@@ -187,7 +189,7 @@ def _path(bench: Bench, loaded: Loaded) -> list[tuple[float, float]]:
 def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: _Ending) -> None:
     """Boots, runs and stops; what goes wrong is kept in `ending`. Time and cost are those of the cycles."""
     cost = bench.rig.cost
-    ending.attempt(bench.boot)
+    ending.attempt(lambda: bench.boot(lambda: _refuse_to_go_on(watch)))
     if ending.status == PASSED:
         start, before = perf_counter(), cost.as_dict()
         with collector.paused():
@@ -196,6 +198,13 @@ def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: 
         ending.cost = {part: spent - before[part] for part, spent in cost.as_dict().items()}
     ending.attempt(lambda: bench.stop(ending.last))
     ending.attempt(journal.close)
+
+
+def _refuse_to_go_on(watch: Watch) -> None:
+    """Raises Interrupted once the run is asked to end: no motor is switched on after that."""
+    asked = watch.stop()
+    if asked is not None:
+        raise Interrupted(f"{asked} while the drives were brought up")
 
 
 def _cycles(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: _Ending) -> None:

@@ -31,6 +31,10 @@ class BusError(HilbedError):
     """Something found on an opened bus: node missing, wrong identity, SDO abort, bus lost."""
 
 
+class Interrupted(HilbedError):
+    """Somebody has asked the run to end."""
+
+
 class Diverged(HilbedError):
     """The run cannot go on: a number is not finite, the robot fell over or left the world."""
 

@@ -50,18 +50,20 @@ class Hands:
     faults: Faults | None = None
     power_on: Nanos = BOOT
 
-    def boot(self) -> None:
-        """Brings the drives up, from `power_on` before t = 0 on."""
+    def boot(self, going: Callable[[], None]) -> None:
+        """Brings the drives up, from `power_on` before t = 0 on; `going` raises where that is to end."""
+
+        def pump(t: Nanos) -> Nanos:
+            going()
+            self.plant.idle(t, t + self.tick)
+            return t + self.tick
+
         start = -self.power_on
         for wake in self.wake:
             wake(start)
         self.carriage.start(start)
-        self.master.boot(self._pump, start, 0)
+        self.master.boot(pump, start, 0)
         self.plant.start()
-
-    def _pump(self, t: Nanos) -> Nanos:
-        self.plant.idle(t, t + self.tick)
-        return t + self.tick
 
     def stop(self, t: Nanos) -> None:
         """Stops the drives quickly, from `t` or where the bench has got to, and waits for their rest."""

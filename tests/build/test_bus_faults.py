@@ -85,7 +85,7 @@ def speeds(file: Path, *chosen: str) -> tuple[int, np.ndarray]:
     bench = build(load(str(file), chosen), Notes(), Cost())
     last = status = 0
     try:
-        bench.boot()
+        bench.boot(lambda: None)
         try:
             for cycle in loop.run(bench.rig, nanos(1.2)):
                 last = cycle.t

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import can
@@ -15,7 +14,7 @@ from hilbed.can.hardware import Adapter
 from hilbed.record.folder import RunFolder
 from hilbed.runner import BUS, Outcome, Watch, perform
 from hilbed.scenario.load import load
-from hilbed.types import BusError, Frame
+from hilbed.types import BusError, Cycle, Frame
 
 SCENARIO = "slimane2014/load-torque"
 SHORT = ["duration=0.3", "criteria={}"]
@@ -177,12 +176,24 @@ def test_a_node_that_should_be_simulated_answers_on_the_bus(
 
 
 def test_a_stop_asked_for_stops_the_drives_on_the_bus() -> None:
-    asked: list[Callable[[], None]] = []
+    cycles: list[Cycle] = []
     with can.Bus(interface="virtual", channel="joined") as witness:
-        outcome = run(JOINED, watch=Watch(lambda: "SIGTERM", lambda _: asked.clear()))
+        outcome = run(JOINED, watch=Watch(lambda: "SIGTERM" if cycles else None, cycles.append))
         heard = frames_of(witness)
     assert outcome.status == 2
+    assert len(cycles) == 1
     assert words(heard, 1)[-1] == words(heard, 2)[-1] == cia402.QUICK_STOP
+
+
+def test_a_stop_asked_for_while_drives_boot_switches_no_motor_on() -> None:
+    with can.Bus(interface="virtual", channel="joined") as witness:
+        outcome = run(JOINED, watch=Watch(lambda: "SIGINT"))
+        heard = frames_of(witness)
+    assert (outcome.status, outcome.verdict["reason"]) == (2, "SIGINT while the drives were brought up")
+    told = {
+        data[4] for identifier, data in heard if identifier in (0x601, 0x602) and data[1:3] == b"\x40\x60"
+    }
+    assert told == {cia402.QUICK_STOP}
 
 
 def test_standstill_is_waited_for_no_longer_than_its_deadline(monkeypatch: pytest.MonkeyPatch) -> None:
