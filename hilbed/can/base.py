@@ -173,7 +173,8 @@ class CanBase:
         for axis in self._real:
             if axis.state != ENABLED_BITS and not self._stopping:
                 state = cia402.state_of(axis.values[STATUS])
-                raise BusError(f"t = {seconds(t):g} s: {axis.node} has stopped by itself: {state}")
+                words = self._last_words(axis)
+                raise BusError(f"t = {seconds(t):g} s: {axis.node} has stopped by itself: {state}{words}")
         before = self._sync_before
         if before is None:
             return
@@ -204,4 +205,10 @@ class CanBase:
 
     def _fail(self, t: Nanos) -> None:
         axis = next(axis for axis in self._axes if axis.silent)
-        raise BusError(f"t = {seconds(t):g} s: {axis.node} has been {axis.silent}")
+        words = self._last_words(axis)
+        raise BusError(f"t = {seconds(t):g} s: {axis.node} has been {axis.silent}{words}")
+
+    def _last_words(self, axis: Axis) -> str:
+        """Returns the last emergency of a drive: most often the cause of what it does not do any more."""
+        said = [e for e in self.ears.events if e.drive == axis.node.name and e.text.startswith("emergency")]
+        return f" (t = {seconds(said[-1].t):g} s: {said[-1].text})" if said else ""
