@@ -29,7 +29,7 @@ def simulated(folder: Path) -> Iterator[Plant]:
     """A robot that sets off now; its drives take a target over at the SYNC after it."""
     bench: Bench = build(load(str(small(folder))), Notes(), Cost())
     try:
-        bench.boot()
+        bench.boot(lambda: None)
         plant, base, command = bench.rig.plant, bench.rig.base, Command(0.4, 0.5)
         base.write(0, command)
         plant.advance(0, 10 * MS)
