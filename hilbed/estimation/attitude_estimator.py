@@ -23,7 +23,7 @@ class Attitude:
     """Positions as measured, carried by odometry in between; heading from the observer, at exposures.
 
     Takes "position" readings of the axle's midpoint. `ignored` counts what cannot be used: odometry and
-    readings that are not finite, of another kind, out of order or older than the memory.
+    readings that are not finite, of another kind, out of order, older than the memory or as far ahead.
     """
 
     def __init__(self, spec: AttitudeSpec, start: Pose) -> None:
@@ -40,7 +40,9 @@ class Attitude:
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""
         self._move(odometry)
-        ready = sorted((*self._waiting, *readings), key=lambda reading: reading.t)
+        soon = [reading for reading in readings if reading.t <= self._t + self._memory]
+        self.ignored += len(readings) - len(soon)
+        ready = sorted(self._waiting + soon, key=lambda reading: reading.t)
         self._waiting = [reading for reading in ready if reading.t > self._t]
         for reading in ready[: len(ready) - len(self._waiting)]:
             self._measure(reading)

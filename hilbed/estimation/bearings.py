@@ -25,8 +25,8 @@ class Bearings:
 
     Readings are taken at their exposure; one without a name goes to the landmark that is expected nearest to
     it. `landmark_distance`: l̂ (m), NaN until both were seen. `ignored` counts what cannot be used: odometry
-    and readings that are not finite, of another kind or beacon, nameless before both were seen, out of order
-    or too old. Until both were seen the pose is the start as odometry carries it.
+    and readings that are not finite, of another kind or beacon, nameless before both were seen, out of order,
+    too old or far ahead. Until both were seen the pose is the start as odometry carries it.
     """
 
     def __init__(self, spec: BearingsSpec, start: Pose) -> None:
@@ -34,6 +34,7 @@ class Bearings:
             Track(spec.observer(), guess, spec.step, nanos(spec.memory)) for guess in spec.distances
         ]
         self._start = start
+        self._memory = nanos(spec.memory)
         self._t: Nanos = 0
         self._waiting: list[Reading] = []
         self.landmark_distance = nan
@@ -57,9 +58,13 @@ class Bearings:
 
     def _measure(self, readings: Sequence[Reading]) -> tuple[Innovation, ...]:
         """Gives each reading exposed by now to its landmark, in the order of exposure; keeps the others."""
-        usable_readings = [r for r in readings if r.kind == "azimuth" and isfinite(r.value[0])]
-        self.ignored += len(readings) - len(usable_readings)
-        ready = sorted(self._waiting + usable_readings, key=lambda r: (r.t, r.beacon is None, r.value))
+        fine = [
+            r
+            for r in readings
+            if r.kind == "azimuth" and isfinite(r.value[0]) and r.t <= self._t + self._memory
+        ]
+        self.ignored += len(readings) - len(fine)
+        ready = sorted(self._waiting + fine, key=lambda r: (r.t, r.beacon is None, r.value))
         self._waiting = [r for r in ready if r.t > self._t]
         innovations = []
         for reading in ready[: len(ready) - len(self._waiting)]:

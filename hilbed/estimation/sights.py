@@ -14,6 +14,7 @@ import numpy as np
 from hilbed.angles import wrap
 from hilbed.types import Array, Pose
 
+UNKNOWN = 1e6  # m², rad²: no idea
 CLOSEST = 1e-6  # m: landmarks nearer to each other than that have no direction from one to the other
 
 
@@ -57,7 +58,7 @@ def surveyed(a: Sight, b: Sight) -> Survey:
 
 
 def sight_jacobian(state: Survey) -> Array:
-    """Returns ∂(r_A, φ_A, r_B, φ_B)/∂(x, y, θ, l), (4, 4); singular on the line through the landmarks."""
+    """Returns ∂(r_A, φ_A, r_B, φ_B)/∂(x, y, θ, l), (4, 4); its determinant is l / (r_A r_B)."""
     x, y, _, l = state  # noqa: E741
     rows = []
     for ahead, in_l in ((y, 0.0), (y - l, -1.0)):
@@ -71,7 +72,7 @@ def sight_jacobian(state: Survey) -> Array:
 def surveyed_covariance(state: Survey, sights: Array) -> Array:
     """Returns the covariance (4, 4) of the full state from that of (r_A, φ_A, r_B, φ_B).
 
-    Where the robot is on the line through the landmarks the sights do not tell all of it: very large.
+    Where the landmarks are one, or far away, the sights do not tell all of it: UNKNOWN on the diagonal.
     """
     J = sight_jacobian(state)
     if abs(np.linalg.det(J)) < CLOSEST:
@@ -79,6 +80,3 @@ def surveyed_covariance(state: Survey, sights: Array) -> Array:
     inverse = np.linalg.inv(J)
     covariance: Array = inverse @ sights @ inverse.T
     return 0.5 * (covariance + covariance.T)
-
-
-UNKNOWN = 1e6  # m², rad²: no idea
