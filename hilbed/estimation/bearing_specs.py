@@ -22,7 +22,7 @@ class BearingsSpec(Spec):
     """
 
     distances: Listed[tuple[Distance, Distance]] = (1.0, 2.0**0.5)
-    step: Annotated[float, Field(ge=1e-5, le=0.1)] = 1e-3
+    step: Annotated[float, Field(ge=1e-5, le=0.1)] = 5e-4
     memory: Annotated[float, Field(gt=0, le=60)] = 1.0
 
     def observer(self) -> Observer:

@@ -26,8 +26,10 @@ def travelled(observer: Observer, state: State, leg: Leg, step: float) -> State:
     Backwards the heading is turned by π for the while, which is all that changes. A robot that turns on the
     spot learns nothing and keeps φ in step.
     """
+    if leg.distance == 0.0:
+        return bounded((state[0], state[1] + leg.turn, *state[2:]))
     flip = pi if leg.distance < 0.0 else 0.0
-    steps = max(1, ceil(abs(leg.distance) / step))
+    steps = ceil(abs(leg.distance) / step)
     state = bounded((state[0], state[1] + flip, *state[2:]))
     for k in range(steps):
         state = bounded(_rk4(observer, state, _part(leg, k / steps, (k + 1) / steps, flip)))

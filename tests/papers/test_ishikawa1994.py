@@ -75,33 +75,36 @@ def test_figures_3_and_4_as_printed_the_lyapunov_observer_is_still_off_at_the_en
     assert left[-1, 1] > 0.3
 
 
-def lyapunov_rates(s: float, x: Array) -> list[float]:
-    """Plant and both Lyapunov observers from the equations as mended, in one system."""
+S = np.arange(0, 1.0005, 1e-3)  # m, of one run of Fig. 3 at each cycle
+X, Y = 1.0 + S * cos(-0.5), 2.0 + S * sin(-0.5)
+PHI = [-0.5 - np.arctan2(Y - ay, X - ax) for ax, ay in POSITIONS]
+
+
+def lyapunov_rates(s: float, x: Array, straight: bool) -> list[float]:
+    """Both Lyapunov observers from the equations as mended; φ as it is, or straight over each cycle."""
     px, py = 1.0 + s * cos(-0.5), 2.0 + s * sin(-0.5)
     rates = []
-    for (r, phi), (ax, ay) in zip((x[:2], x[2:]), POSITIONS, strict=True):
-        m = -0.5 - np.arctan2(py - ay, px - ax)
+    for (r, phi), (ax, ay), cycles in zip((x[:2], x[2:]), POSITIONS, PHI, strict=True):
+        m = float(np.interp(s, S, cycles)) if straight else -0.5 - np.arctan2(py - ay, px - ax)
         scale = 4.0 * (m - phi) / (4 * (2.0e-4 - 1.0e-4) * r**2)
         rates += [cos(m) + np.sign(sin(m)) * scale, -sin(m) / r + 2.0e-2 * scale]
     return rates
 
 
-def test_figure_3_equals_an_integration() -> None:
-    """x̂, ŷ, l̂ by (8) from r̂ of scipy and the measured angles; at every 50th cycle."""
-    result = estimated(LyapunovObserverSpec(epsilon_2=2.0e-4), FORWARD, Straight())
-    phi = [sight(FORWARD.start, landmark).phi for landmark in POSITIONS]
-    s = np.arange(0, 3.0001, 0.05)
-    x0 = (1.0, phi[0], 2**0.5, phi[1])
-    r = solve_ivp(lyapunov_rates, (0, 3), x0, method="LSODA", t_eval=s, rtol=1e-11, atol=1e-11).y[[0, 2]]
-    px, py = 1.0 + s * cos(-0.5), 2.0 + s * sin(-0.5)
-    between = np.arctan2(py, px) - np.arctan2(py - 1, px)
-    l = np.sqrt(r[0] ** 2 + r[1] ** 2 - 2 * r[0] * r[1] * np.cos(between))  # noqa: E741
-    expected = np.column_stack(
-        (r[0] * r[1] * np.sin(between) / l, (r[0] ** 2 - r[0] * r[1] * np.cos(between)) / l, l)
-    )
-    ours = np.column_stack((result.mean[::50, :2], result.extra[::50]))
-    np.testing.assert_allclose(ours, expected, atol=2e-5)
-    np.testing.assert_allclose(ours[-20:], expected[-20:], atol=1e-6)
+@pytest.mark.parametrize(("straight", "tolerance"), [(True, 1e-6), (False, 3e-5)])
+def test_figures_3_and_4_equal_an_integration(straight: bool, tolerance: float) -> None:
+    """x̂, ŷ, l̂ by (8) from r̂ of scipy and the measured angles."""
+    spec = LyapunovObserverSpec(epsilon_2=2.0e-4)
+    result = estimated(spec, FORWARD._replace(duration=1000 * MS), Straight())
+    rows = [np.array((1.0, PHI[0][0], 2**0.5, PHI[1][0]))]
+    for s in S[:-1]:
+        step = solve_ivp(lyapunov_rates, (s, s + 1e-3), rows[-1], args=(straight,), rtol=1e-9, atol=1e-11)
+        rows.append(step.y[:, -1])
+    a, b = np.array(rows).T[[0, 2]]
+    between = PHI[1] - PHI[0]
+    l = np.sqrt(a**2 + b**2 - 2 * a * b * np.cos(between))  # noqa: E741
+    expected = np.column_stack((a * b * np.sin(between) / l, (a**2 - a * b * np.cos(between)) / l, l))
+    np.testing.assert_allclose(np.column_stack((result.mean[:, :2], result.extra)), expected, atol=tolerance)
 
 
 @pytest.mark.parametrize("speed", [1.0, -1.0])
@@ -114,7 +117,7 @@ def test_state_feedback_has_its_closed_form(speed: float, yaw: float) -> None:
     x, e = np.abs(truth[:, 0] - 3.0), truth[:, 1] - 1.5
     slope = np.copysign(1, cos(yaw) * speed) * tan(yaw)  # de/dx at the start, x counted along the travel
     np.testing.assert_allclose(e, (-0.5 + (slope - 1.0) * x) * np.exp(-2 * x), atol=2e-3)
-    assert abs(e[-1]) < 0.02
+    assert abs(e[-1]) < 0.03
 
 
 @pytest.mark.parametrize("speed", [1.0, -1.0])
