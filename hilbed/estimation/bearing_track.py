@@ -12,7 +12,7 @@ from hilbed.types import Nanos
 
 
 class Track:
-    """An observer integrated from exposure to exposure, φ straight in between; beyond, odometry carries it."""
+    """An observer integrated from exposure to exposure, φ straight in between; then carried by odometry."""
 
     def __init__(self, observer: Observer, guess: float, step: float, memory: Nanos) -> None:
         """guess: of the distance (m); step (m) of integration; memory: how much of the way is kept."""
