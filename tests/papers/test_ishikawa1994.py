@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from hilbed.angles import wrap
 from hilbed.control.path_following import PathFollowing, PathFollowingSpec
 from hilbed.control.steered import Steered
 from hilbed.estimation.bearing_specs import (
@@ -17,6 +18,7 @@ from hilbed.estimation.bearing_specs import (
     LyapunovObserverSpec,
 )
 from hilbed.estimation.bearings import Bearings
+from hilbed.estimation.consistency import mean_bounds, nees, pose_error
 from hilbed.estimation.sights import angle, sight
 from hilbed.plant.kinematic import Vehicle
 from hilbed.plant.kinematics import rk4
@@ -155,3 +157,47 @@ def test_square_to_the_line_the_law_does_nothing_and_says_so() -> None:
     command = law.step(0, Estimate(0, np.array((0.0, 0.0, pi / 2)), np.zeros((3, 3))))
     assert command == pytest.approx((1.0, 0.0), abs=1e-12)
     assert law.beyond == 1
+
+
+def doubted(form: str, seed: int) -> tuple[Array, Array]:
+    """NEES of the pose and NIS of both bearings over Fig. 3's way, the noise being what the filter is told.
+
+    2 mrad on each bearing every 20 ms; r̂ drawn about the truth; the motion has no noise.
+    """
+    std, doubt, cycle = 2e-3, 0.02, 20 * MS
+    rng = np.random.default_rng(seed)
+    guesses = tuple(sight(FORWARD.start, landmark).r + rng.normal(0, doubt) for landmark in POSITIONS)
+    R = std**2 * (0.02 if form == "bucy" else 1.0)  # per metre, or per bearing
+    noise = {"Q": (1e-12, 1e-12), "R": R, "P0": (doubt**2, std**2)}
+    spec = BearingKalmanSpec.model_validate({"form": form, "distances": guesses, "step": 0.02, **noise})
+
+    def noisy(t: int, pose: Pose) -> list[Reading]:
+        return [r._replace(value=(wrap(r.value[0] + rng.normal(0, std)),)) for r in bearings(t, pose)]
+
+    experiment = FORWARD._replace(period=cycle)
+    result = run(experiment, Bearings(spec, Pose(0.0, 0.0, 0.0)), Straight(), noisy)
+    covariance = np.array([e.covariance for e in result.estimates])
+    nis = np.array([sum(i.nis for i in e.innovations) for e in result.estimates[1:]])
+    return nees(pose_error(result.mean, result.truth), covariance), nis
+
+
+def within(values: Array, dof: int) -> float:
+    """The share of the steps in which the mean over runs (axis 0) is inside its 95 % bounds."""
+    low, high = mean_bounds(dof, len(values))
+    mean = values.mean(axis=0)
+    return float(np.mean((mean > low) & (mean < high)))
+
+
+@pytest.mark.parametrize("form", ["bucy", "sampled"])
+def test_the_kalman_filters_are_consistent_over_50_seeds(form: str) -> None:
+    runs = [doubted(form, seed) for seed in range(50)]
+    assert within(np.array([errors for errors, _ in runs]), 3) >= 0.9
+    if form == "sampled":
+        assert within(np.array([nis for _, nis in runs]), 2) >= 0.9
+
+
+def test_the_papers_own_tuning_doubts_far_too_much() -> None:
+    """Q = 1e3 m²/m beside bearings that are exact: NEES far below its 3."""
+    result = estimated(BearingKalmanSpec(), FORWARD, Straight())
+    covariance = np.array([e.covariance for e in result.estimates])
+    assert nees(pose_error(result.mean, result.truth), covariance)[2000:].max() < 0.1
