@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from hilbed.control.lqr import body_error
+from hilbed.control.lyapunov_spec import LyapunovTrackingSpec
 from hilbed.ports import Reference
-from hilbed.spec import Positive, Spec
 from hilbed.types import Command, Estimate, Nanos, Pose
 
 
@@ -17,15 +17,6 @@ class Gains(NamedTuple):
     k1: float
     k2: float
     k3: float
-
-
-class LyapunovTrackingSpec(Spec):
-    """Gains of (3.13): k1 1/s, k2 rad/m², k3 rad/m; (3.17) has 0.5 for each."""
-
-    kind: Literal["lyapunov"] = "lyapunov"
-    k1: Positive = 0.5
-    k2: Positive = 0.5
-    k3: Positive = 0.5
 
 
 def tracking_twist(

@@ -12,7 +12,8 @@ from hilbed.angles import wrap
 from hilbed.chords import chord
 from hilbed.clock import nanos
 from hilbed.estimation.attitude import STILL, extended, through
-from hilbed.estimation.attitude_observers import OBSERVERS, AttitudeSpec
+from hilbed.estimation.attitude_observers import OBSERVERS
+from hilbed.estimation.attitude_spec import AttitudeSpec
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
 from hilbed.estimation.ways import Way, split

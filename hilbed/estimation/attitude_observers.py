@@ -1,32 +1,16 @@
-"""The three attitude observers of Pliego-Jiménez (2023) by their form, and their scenario block."""
+"""The three attitude observers of Pliego-Jiménez (2023) by their form."""
 
 from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Callable
-from math import pi
-from typing import Annotated, Literal, Protocol
+from typing import Protocol
 
 import numpy as np
-from pydantic import Field
 
 from hilbed.estimation.attitude import Motion, global_step, s1_step, so2_step
-from hilbed.spec import Positive, Spec
 
 SHORTEST = 1e-3  # of Θ̄: a shorter one points nowhere
-
-
-class AttitudeSpec(Spec):
-    """form: on SO(2), on the unit circle, or global; gain: α or g, s/m² (free); memory: s.
-
-    heading_error (rad): of the first guess, taken off the robot's heading at the start.
-    """
-
-    kind: Literal["attitude"] = "attitude"
-    form: Literal["so2", "s1", "global"] = "so2"
-    gain: Positive = 5.0
-    heading_error: Annotated[float, Field(ge=-pi, le=pi)] = 0.0
-    memory: Annotated[float, Field(gt=0, le=60)] = 1.0
 
 
 class Observer(Protocol):

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from hilbed.control.legs import LegsSpec
 from hilbed.control.lqr import body_error
-from hilbed.control.lyapunov_tracking import Gains, LyapunovTracking, LyapunovTrackingSpec, tracking_twist
+from hilbed.control.lyapunov_spec import LyapunovTrackingSpec
+from hilbed.control.lyapunov_tracking import Gains, LyapunovTracking, tracking_twist
 from hilbed.plant.kinematics import exact
 from hilbed.types import Estimate, Pose
 

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from hilbed.angles import wrap
 from hilbed.estimation.attitude_estimator import Attitude
-from hilbed.estimation.attitude_observers import AttitudeSpec
+from hilbed.estimation.attitude_spec import AttitudeSpec
 from hilbed.plant.kinematics import exact
 from hilbed.types import Estimate, Odometry, Pose, Reading
 

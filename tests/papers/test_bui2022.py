@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 
 from hilbed.angles import wrap
 from hilbed.control.legs import LegsSpec
-from hilbed.control.lyapunov_tracking import LyapunovTracking, LyapunovTrackingSpec
+from hilbed.control.lyapunov_spec import LyapunovTrackingSpec
+from hilbed.control.lyapunov_tracking import LyapunovTracking
 from hilbed.control.open_loop import OpenLoop
 from hilbed.control.ramps import Ramps, RampSpec, RampsSpec
 from hilbed.control.steered import Steered

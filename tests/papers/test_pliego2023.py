@@ -12,7 +12,7 @@ from hilbed.control.front_point import FrontPoint, FrontPointSpec, front_point, 
 from hilbed.control.reference import CircleSpec, FigureEightSpec, PathReference
 from hilbed.control.steered import Steered
 from hilbed.estimation.attitude_estimator import Attitude
-from hilbed.estimation.attitude_observers import AttitudeSpec
+from hilbed.estimation.attitude_spec import AttitudeSpec
 from hilbed.plant.kinematic import Vehicle
 from hilbed.robots.tricycle import Tricycle, TricycleSpec
 from hilbed.types import Array, Pose, Reading

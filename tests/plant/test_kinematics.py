@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 
 from hilbed.angles import wrap
 from hilbed.plant.kinematic import IdealBase, KinematicPlant, Vehicle
+from hilbed.plant.kinematic_spec import KinematicSpec, make_vehicle
 from hilbed.plant.kinematics import INTEGRATORS, TwistNoise, advanced, euler, exact, rk4
 from hilbed.types import Array, Command, Pose
 
@@ -94,3 +96,24 @@ def test_the_plant_is_disturbed_within_its_limits_and_its_base_sees_none_of_it()
     plant.advance(0, 10**9)
     assert plant.truth() == (10**9, (0.5, 0.0, 0.0))
     assert base.read(10**9)[:5] == (10**9, 0.4, 0.0, 0.4, 0.0)
+
+
+def test_a_block_makes_the_plant_it_describes() -> None:
+    """Noise on the command is held over the period, limited after it, and the same for the same stream."""
+    spec = KinematicSpec(integrator="rk4", steps=4, command_noise=(0.0, 0.3), twist_noise=(0.005, 0.1745))
+
+    def ends(seed: int) -> Pose:
+        vehicle = make_vehicle(
+            spec, tuple, lambda c: Command(c[0], min(max(c[1], -0.1), 0.1)), np.random.default_rng(seed)
+        )
+        assert (vehicle.integrator, vehicle.steps) == (rk4, 4)
+        plant = KinematicPlant(Pose(0.0, 0.0, 0.0), vehicle)
+        plant.obey(Command(0.0, 0.0))
+        for t in range(0, 1000, 10):
+            plant.advance(t * 10**7, (t + 10) * 10**7)
+        return plant.truth().pose
+
+    assert ends(1) == ends(1) != ends(2)
+    assert 0 < abs(ends(1).yaw) < 0.1 * 10
+    with pytest.raises(ValidationError):
+        KinematicSpec.model_validate({"integrator": "heun"})
