@@ -16,7 +16,7 @@ from hilbed.estimation.attitude_observers import OBSERVERS
 from hilbed.estimation.attitude_spec import AttitudeSpec
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
-from hilbed.estimation.ways import Way, split
+from hilbed.estimation.ways import Waiting, Way, split
 from hilbed.types import Estimate, Nanos, Odometry, Pose, Reading
 
 
@@ -35,17 +35,15 @@ class Attitude:
         self._since: list[Way] = []  # the last exposure, or the start
         self._now = STILL
         self._t: Nanos = 0
-        self._waiting: list[Reading] = []
+        self._waiting = Waiting(self._memory)
         self.ignored = 0
 
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""
         self._move(odometry)
-        soon = [reading for reading in readings if reading.t <= self._t + self._memory]
-        self.ignored += len(readings) - len(soon)
-        ready = sorted(self._waiting + soon, key=lambda reading: reading.t)
-        self._waiting = [reading for reading in ready if reading.t > self._t]
-        for reading in ready[: len(ready) - len(self._waiting)]:
+        ready, refused = self._waiting.due(readings, self._t)
+        self.ignored += refused
+        for reading in ready:
             self._measure(reading)
         length, direction = chord(*extrapolation(t - self._t, odometry))
         ahead = self._now.displacement + rect(length, self._now.turn + direction)

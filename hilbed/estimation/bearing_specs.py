@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from hilbed.estimation.bearing_kalman import KalmanBucy, Noise, SampledKalman
 from hilbed.estimation.bearing_observers import Luenberger, Lyapunov, Observer
+from hilbed.estimation.specs import OdometrySpec
 from hilbed.spec import Listed, Positive, Spec
 
 Distance = Annotated[float, Field(ge=0.05, le=100)]
@@ -75,3 +76,19 @@ class LuenbergerSpec(BearingsSpec):
 
     def observer(self) -> Observer:
         return Luenberger(self.p1, self.p2, self.floor)
+
+
+class SurveySpec(Spec):
+    """The full state in one filter; not in the paper's simulations.
+
+    distances (m) guessed at the start, and how wrong both may be, distance_std (m): a guess should be right
+    within a third, as bearings are sharp and their filter soon believes what they say with it; std (rad): of a bearing,
+    null for what the reading says; memory (s): how old a reading may be.
+    """
+
+    kind: Literal["bearing_survey"] = "bearing_survey"
+    distances: Listed[tuple[Distance, Distance]] = (1.0, 2.0**0.5)
+    distance_std: Positive = 1.0
+    std: Annotated[float, Field(ge=1e-9, le=3.2)] | None = None
+    odometry: OdometrySpec = OdometrySpec()
+    memory: Annotated[float, Field(gt=0, le=60)] = 1.0

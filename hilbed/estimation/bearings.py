@@ -15,7 +15,7 @@ from hilbed.estimation.bearing_track import Track
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
 from hilbed.estimation.sights import Sight, Survey, angle, surveyed, surveyed_covariance
-from hilbed.estimation.ways import Way
+from hilbed.estimation.ways import Waiting, Way
 from hilbed.poses import moved
 from hilbed.types import Array, Estimate, Innovation, Nanos, Odometry, Pose, Reading
 
@@ -34,9 +34,8 @@ class Bearings:
             Track(spec.observer(), guess, spec.step, nanos(spec.memory)) for guess in spec.distances
         ]
         self._start = start
-        self._memory = nanos(spec.memory)
         self._t: Nanos = 0
-        self._waiting: list[Reading] = []
+        self._waiting = Waiting(nanos(spec.memory))
         self.landmark_distance = nan
         self.ignored = 0
 
@@ -58,24 +57,24 @@ class Bearings:
 
     def _measure(self, readings: Sequence[Reading]) -> tuple[Innovation, ...]:
         """Gives each reading exposed by now to its landmark, in the order of exposure; keeps the others."""
-        fine = [
-            r
-            for r in readings
-            if r.kind == "azimuth" and isfinite(r.value[0]) and r.t <= self._t + self._memory
-        ]
-        self.ignored += len(readings) - len(fine)
-        ready = sorted(self._waiting + fine, key=lambda r: (r.t, r.beacon is None, r.value))
-        self._waiting = [r for r in ready if r.t > self._t]
+        ready, refused = self._waiting.due(readings, self._t)
+        self.ignored += refused
         innovations = []
-        for reading in ready[: len(ready) - len(self._waiting)]:
-            phi = angle(reading.value[0])
-            track = self._owner(reading.beacon, phi)
-            nis = None if track is None else track.measure(reading.t, phi)
+        for reading in ready:
+            nis = self._take(reading)
             if nis is None:
                 self.ignored += 1
             elif isfinite(nis):
                 innovations.append(Innovation(reading.t, nis, 1, True))
         return tuple(innovations)
+
+    def _take(self, reading: Reading) -> float | None:
+        """Measures; returns the NIS, None where the reading cannot be used."""
+        if reading.kind != "azimuth" or not isfinite(reading.value[0]):
+            return None
+        phi = angle(reading.value[0])
+        track = self._owner(reading.beacon, phi)
+        return None if track is None else track.measure(reading.t, phi)
 
     def _owner(self, beacon: int | None, phi: float) -> Track | None:
         """Returns the track of a reading: as named, else the one that expects it nearest."""
