@@ -8,6 +8,8 @@ from typing import NamedTuple
 from hilbed.angles import wrap
 from hilbed.estimation.bearing_observers import Observer, State, bounded
 
+COASTING = 0.01  # m: without a correction nothing moves fast; a step of this is exact to 1e-8
+
 
 class Leg(NamedTuple):
     """A piece of the way: distance (m, negative backwards), turn (rad), both even over it.
@@ -21,7 +23,7 @@ class Leg(NamedTuple):
 
 
 def travelled(observer: Observer, state: State, leg: Leg, step: float) -> State:
-    """Returns the state after a leg, by Runge–Kutta steps of at most `step` (m).
+    """Returns the state after a leg, by Runge–Kutta steps of at most `step` (m), longer where it coasts.
 
     Backwards the heading is turned by π for the while, which is all that changes. A robot that turns on the
     spot learns nothing and keeps φ in step.
@@ -29,7 +31,8 @@ def travelled(observer: Observer, state: State, leg: Leg, step: float) -> State:
     if leg.distance == 0.0:
         return bounded((state[0], state[1] + leg.turn, *state[2:]))
     flip = pi if leg.distance < 0.0 else 0.0
-    steps = ceil(abs(leg.distance) / step)
+    longest = step if leg.measured else max(step, COASTING)
+    steps = ceil(abs(leg.distance) / longest)
     state = bounded((state[0], state[1] + flip, *state[2:]))
     for k in range(steps):
         state = bounded(_rk4(observer, state, _part(leg, k / steps, (k + 1) / steps, flip)))
