@@ -81,9 +81,8 @@ class LuenbergerSpec(BearingsSpec):
 class SurveySpec(Spec):
     """The full state in one filter; not in the paper's simulations.
 
-    distances (m) guessed at the start, and how wrong both may be, distance_std (m): a guess should be right
-    within a third, as bearings are sharp and their filter soon believes what they say with it; std (rad): of
-    a bearing, null for what the reading says; memory (s): how old a reading may be.
+    distances (m) guessed at the start, and how wrong both may be, distance_std (m); std (rad): of a bearing,
+    null for what the reading says; memory (s): how old a reading may be.
     """
 
     kind: Literal["bearing_survey"] = "bearing_survey"

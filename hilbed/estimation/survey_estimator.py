@@ -12,7 +12,14 @@ from hilbed.estimation.bearing_specs import SurveySpec
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
 from hilbed.estimation.sights import Sight, angle, surveyed, surveyed_covariance
-from hilbed.estimation.survey_filter import Belief, corrected, moved_on, started, surprise
+from hilbed.estimation.survey_filter import (
+    Belief,
+    corrected,
+    moved_on,
+    sights_covariance,
+    started,
+    surprise,
+)
 from hilbed.estimation.ways import Waiting, Way, split
 from hilbed.poses import moved
 from hilbed.types import Estimate, Innovation, Nanos, Odometry, Pose, Reading
@@ -51,10 +58,10 @@ class SurveyEstimator:
             return Estimate(t, np.array(moved(self._start, *ahead)), NO_COVARIANCE)
         if ready or self._ahead is None:
             self._ahead = self._through(self._belief, self._since)
-        a, b, P = moved_on(self._ahead, ahead, self._model)
-        state = surveyed(a, b)
+        belief = moved_on(self._ahead, ahead, self._model)
+        state = surveyed(belief.a, belief.b)
         self.landmark_distance = state.l
-        covariance = surveyed_covariance(state, P)[:3, :3]
+        covariance = surveyed_covariance(state, sights_covariance(belief))[:3, :3]
         return Estimate(t, np.array(state[:3]), covariance, tuple(i for i in innovations if i is not None))
 
     def _move(self, odometry: Odometry) -> None:

@@ -1,8 +1,9 @@
-"""Extended Kalman filter of r_A, φ_A, r_B, φ_B together: the full form (6) of Ishikawa & Sampei (1994).
+"""Extended Kalman filter of both sights together: the full form (6) of Ishikawa & Sampei (1994).
 
-The paper splits it into two filters of two states, which loses what their errors have in common. In these
-coordinates a bearing is a state, so that the update is exact; in x, y, θ, l a filter is led astray by a wrong
-first guess of the distances.
+The paper splits it into two filters of two states, which loses what their errors have in common. Its
+states are 1/r and φ of each landmark: a bearing is a state and parallax is linear in 1/r, so that a wrong
+first guess of the distances does not lead it astray, as it does in x, y, θ, l or with r (Civera, Davison,
+Montiel, Inverse Depth Parametrization for Monocular SLAM, 2008).
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from hilbed.types import Array
 
 
 class Belief(NamedTuple):
-    """Both sights (m, rad) and their covariance (4, 4)."""
+    """Both sights (m, rad) and the covariance (4, 4) of 1/r_A, φ_A, 1/r_B, φ_B."""
 
     a: Sight
     b: Sight
@@ -31,11 +32,18 @@ class Belief(NamedTuple):
 
 def started(a: Sight, b: Sight, distance_std: float, bearing_std: float) -> Belief:
     """Returns the belief from two measured angles and two guessed distances (m) with their deviations."""
-    return Belief(a, b, np.diag((distance_std, bearing_std, distance_std, bearing_std)) ** 2)
+    deviations = distance_std / a.r**2, bearing_std, distance_std / b.r**2, bearing_std
+    return Belief(a, b, np.diag(deviations) ** 2)
+
+
+def sights_covariance(belief: Belief) -> Array:
+    """Returns the covariance (4, 4) of r_A, φ_A, r_B, φ_B."""
+    D = np.diag((-(belief.a.r**2), 1.0, -(belief.b.r**2), 1.0))
+    return np.asarray(D @ belief.P @ D)
 
 
 def carried(sight: Sight, step: tuple[float, float]) -> tuple[Sight, Array, Array]:
-    """Returns a sight after an arc (m, rad), and its derivatives (2, 2) by the sight and by the step.
+    """Returns a sight after an arc (m, rad), and derivatives (2, 2) of (1/r, φ) by themselves and the step.
 
     The robot as seen from the landmark, in axes along its heading, is r exp(−iφ); the arc adds its chord, and
     turns the axes.
@@ -46,9 +54,14 @@ def carried(sight: Sight, step: tuple[float, float]) -> tuple[Sight, Array, Arra
     way, unit = rect(length, direction), rect(1.0, direction)
     q = (sight.r * before + way) * back
     r = max(abs(q), NEAREST)
-    changes = (before * back, -1j * sight.r * before * back, unit * back, 0.5j * way * back - 1j * q)
+    changes = (
+        -(sight.r**2) * before * back,
+        -1j * sight.r * before * back,
+        unit * back,
+        0.5j * way * back - 1j * q,
+    )
     rows = [(q.conjugate() * dq for dq in pair) for pair in (changes[:2], changes[2:])]
-    by_sight, by_step = (np.array([(p.real / r, -p.imag / r**2) for p in row]).T for row in rows)
+    by_sight, by_step = (np.array([(-p.real / r**3, -p.imag / r**2) for p in row]).T for row in rows)
     return Sight(min(r, FARTHEST), wrap(-phase(q))), by_sight, by_step
 
 
@@ -79,5 +92,6 @@ def corrected(belief: Belief, landmark: int, phi: float, variance: float) -> Bel
     return Belief(_shifted(belief.a, ra, fa), _shifted(belief.b, rb, fb), P)
 
 
-def _shifted(sight: Sight, r: float, phi: float) -> Sight:
-    return Sight(min(max(sight.r + r, NEAREST), FARTHEST), wrap(sight.phi + phi))
+def _shifted(sight: Sight, inverse: float, phi: float) -> Sight:
+    rho = min(max(1.0 / sight.r + inverse, 1.0 / FARTHEST), 1.0 / NEAREST)
+    return Sight(1.0 / rho, wrap(sight.phi + phi))
