@@ -138,7 +138,7 @@ def test_determinants_are_those_of_the_lie_derivatives(pose: Pose, l: float) -> 
     assert abs(np.linalg.det(rows)) == pytest.approx(abs(closed), rel=1e-9, abs=1e-12)
 
 
-@given(st.floats(0.3, 9.0), st.floats(-pi, pi))
+@given(st.floats(0.3, 9.0), st.floats(-pi, pi).filter(lambda phi: abs(phi) > 1e-9))
 def test_the_reduced_determinant_is_that_of_its_rows(r: float, phi: float) -> None:
     rows = reduced_rows(r, phi, steering=False)
     assert np.linalg.det(rows) == pytest.approx(float(reduced_determinant(np.array(r), np.array(phi))))

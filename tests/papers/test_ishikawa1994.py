@@ -146,6 +146,27 @@ def test_figure_5_reverse_along_the_line_fed_by_an_observer(spec: BearingsSpec) 
     assert abs(result.truth[-1, 2]) < 2e-2
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_figure_5_with_a_cameras_bearings(seed: int) -> None:
+    """Ten a second, 2 mrad, 40 ms late, by the extended Luenberger observer with its floor."""
+    rng, coming = np.random.default_rng(seed), list[Reading]()
+
+    def camera(t: int, pose: Pose) -> list[Reading]:
+        if t % (100 * MS) == 0:
+            coming.extend(
+                r._replace(value=(wrap(r.value[0] + rng.normal(0, 2e-3)),), delivered=t + 40 * MS)
+                for r in bearings(t, pose)
+            )
+        due = [r for r in coming if r.delivered <= t]
+        del coming[: len(due)]
+        return due
+
+    law = Steered(PathFollowing(PathFollowingSpec(speed=-1.0)), TRICYCLE.command)
+    estimator = Bearings(LuenbergerSpec(), REVERSE.start)
+    truth = run(REVERSE._replace(period=10 * MS), estimator, law, camera).truth
+    assert np.abs(truth[300:, 1] - 1.5).max() < 0.08
+
+
 def test_a_differential_drive_follows_the_line_too() -> None:
     law = PathFollowing(PathFollowingSpec(speed=-1.0))
     result = estimated(LuenbergerSpec(), REVERSE._replace(vehicle=Vehicle(tuple, integrator=rk4)), law)
