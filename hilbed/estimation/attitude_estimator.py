@@ -1,0 +1,87 @@
+"""The pose of a robot of which only positions are measured, by one of three attitude observers."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from collections.abc import Sequence
+from math import isfinite
+
+import numpy as np
+
+from hilbed.angles import wrap
+from hilbed.chords import chord
+from hilbed.clock import nanos
+from hilbed.estimation.attitude import STILL, extended, through
+from hilbed.estimation.attitude_observers import OBSERVERS
+from hilbed.estimation.attitude_spec import AttitudeSpec
+from hilbed.estimation.dead_reckoning import extrapolation, usable
+from hilbed.estimation.no_covariance import NO_COVARIANCE
+from hilbed.estimation.ways import Waiting, Way, split
+from hilbed.types import Estimate, Nanos, Odometry, Pose, Reading
+
+
+class Attitude:
+    """Positions as measured, carried by odometry in between; heading from the observer, at exposures.
+
+    Takes "position" readings of the axle's midpoint. `ignored` counts what cannot be used: odometry and
+    readings that are not finite, of another kind, out of order, older than the memory or as far ahead.
+    """
+
+    def __init__(self, spec: AttitudeSpec, start: Pose) -> None:
+        self._observer = OBSERVERS[spec.form](start.yaw - spec.heading_error, spec.gain)
+        self._memory = nanos(spec.memory)
+        self._position = complex(start.x, start.y)
+        self._seen: Nanos | None = None
+        self._since: list[Way] = []  # the last exposure, or the start
+        self._now = STILL
+        self._t: Nanos = 0
+        self._waiting = Waiting(self._memory)
+        self.ignored = 0
+
+    def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
+        """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""
+        self._move(odometry)
+        ready, refused = self._waiting.due(readings, self._t)
+        self.ignored += refused
+        for reading in ready:
+            self._measure(reading)
+        length, direction = chord(*extrapolation(t - self._t, odometry))
+        ahead = self._now.displacement + rect(length, self._now.turn + direction)
+        place = self._position + self._observer.heading * ahead
+        yaw = wrap(phase(self._observer.heading) + self._now.turn + 2.0 * direction)
+        return Estimate(t, np.array((place.real, place.imag, yaw)), NO_COVARIANCE)
+
+    def _move(self, odometry: Odometry) -> None:
+        if not usable(odometry) or odometry.t < self._t:
+            self.ignored += 1
+        elif odometry.t > self._t:
+            way = Way(self._t, odometry.t, odometry.distance, odometry.turn)
+            self._t = odometry.t
+            self._since.append(way)
+            self._now = extended(self._now, way)
+            if self._since[0].end < way.end - self._memory:
+                self._carry(self._since.pop(0))
+
+    def _carry(self, way: Way) -> None:
+        """Moves the kept state over a way too old to be measured in."""
+        motion = extended(STILL, way)
+        self._position += self._observer.heading * motion.displacement
+        self._observer.step(motion._replace(displacement=0j))
+        self._seen = None
+        self._now = through(self._since)
+
+    def _measure(self, reading: Reading) -> None:
+        """Corrects the heading at the exposure by the way since the last one."""
+        fresh = self._seen is None or reading.t > self._seen
+        known = not self._since or reading.t >= self._since[0].start
+        if reading.kind != "position" or not all(map(isfinite, reading.value)) or not (fresh and known):
+            self.ignored += 1
+            return
+        place = complex(*reading.value[:2])
+        before, after = split(self._since, reading.t)
+        motion = through(before)
+        if self._seen is None:  # nothing to compare with: only the turn
+            motion = motion._replace(displacement=0j)
+        self._observer.step(motion._replace(measured=place - self._position))
+        self._position, self._seen, self._since = place, reading.t, after
+        self._now = through(after)

@@ -1,0 +1,73 @@
+"""The ideal plant: a kinematic robot that does what it is told, but for noise, as the papers simulate it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from hilbed.clock import seconds
+from hilbed.plant.kinematics import Integrator, Twist, advanced, exact
+from hilbed.types import Command, Nanos, Odometry, Pose, Truth
+
+
+class Vehicle(NamedTuple):
+    """What an ideal plant must know of its robot and of the disturbances.
+
+    twist: of a command; limited: a command as the robot takes it; noise: of the command (drawn each period
+    and held over it, before the robot's limits) and of the twist; integrator and its sub-steps a period.
+    """
+
+    twist: Callable[[Command], Twist]
+    limited: Callable[[Command], Command] = lambda command: command
+    command_noise: Callable[[Command], Command] = lambda command: command
+    twist_noise: Callable[[Twist], Twist] = lambda twist: twist
+    integrator: Integrator = exact
+    steps: int = 1
+
+
+class KinematicPlant:
+    """A pose that moves with the command held; `obey` takes effect from the next `advance`."""
+
+    def __init__(self, start: Pose, vehicle: Vehicle) -> None:
+        self._pose = start
+        self._vehicle = vehicle
+        self._command = Command(0.0, 0.0)
+        self._t: Nanos = 0
+
+    def truth(self) -> Truth:
+        """Returns the pose now."""
+        return Truth(self._t, self._pose)
+
+    def obey(self, command: Command) -> None:
+        """Takes over a command for the coming periods."""
+        self._command = command
+
+    def advance(self, start: Nanos, end: Nanos) -> None:
+        """Moves over one period; draws the period's noise."""
+        of = self._vehicle
+        command = of.limited(of.command_noise(self._command))
+        twist = of.twist_noise(of.twist(command))
+        self._pose = advanced(self._pose, twist, seconds(end - start), of.integrator, of.steps)
+        self._t = end
+
+
+class IdealBase:
+    """The robot wired straight to the plant: odometry is the limited command, without the noise on it."""
+
+    def __init__(self, plant: KinematicPlant, vehicle: Vehicle) -> None:
+        self._plant = plant
+        self._vehicle = vehicle
+        self._twist: Twist = (0.0, 0.0)
+        self._t: Nanos = 0
+
+    def read(self, t: Nanos) -> Odometry:
+        """Returns what encoders that see no noise say of the way since the last call."""
+        v, w = self._twist
+        T = seconds(t - self._t)
+        self._t = t
+        return Odometry(t, v * T, w * T, v, w)
+
+    def write(self, t: Nanos, command: Command) -> None:  # noqa: ARG002
+        """Passes the command on."""
+        self._twist = self._vehicle.twist(self._vehicle.limited(command))
+        self._plant.obey(command)
