@@ -75,7 +75,9 @@ near = st.one_of(st.floats(-3, 3), st.sampled_from([0.0, 1.0, -1.0, 0.6, 0.8, np
 @settings(max_examples=300)
 @given(st.lists(st.tuples(near, near), min_size=1, max_size=40))
 @example([(0.0, 0.0), (1.0, 0.0), (1.0, 0.0)])
-def test_same_index_as_brute_force_where_pairs_are_just_one_unit_apart(points: list[tuple[float, float]]) -> None:
+def test_same_index_as_brute_force_where_pairs_are_just_one_unit_apart(
+    points: list[tuple[float, float]],
+) -> None:
     x, y = np.array(points).T
     assert most_supported(x, y) == brute(x, y)
 
