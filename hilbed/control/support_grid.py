@@ -31,12 +31,12 @@ class Reach(NamedTuple):
 
 @lru_cache(maxsize=64)
 def reach(n: int, rows: int, columns: int) -> Reach:
-    """Returns the cells near a cell, for cells of side 1/n and points at most rows, columns apart.
+    """Returns the cells near a cell, for cells of side 1/n and points at most rows, columns apart, n or less.
 
     Points of two cells that are i columns and j rows apart are at least (max(i − 1, 0), max(j − 1, 0))/n
     and less than (i + 1, j + 1)/n apart.
     """
-    row = np.arange(-min(n, rows), min(n, rows) + 1)
+    row = np.arange(-rows, rows + 1)
     nearest = [n * n - max(abs(j) - 1, 0) ** 2 for j in row.tolist()]
     farthest = [n * n - (abs(j) + 1) ** 2 for j in row.tolist()]
     out = np.array([min(isqrt(q - 1) + 1, columns) for q in nearest])
@@ -55,7 +55,8 @@ class Grid:
         """x, y: (M,), finite, at least one; their extents times n are what memory must hold."""
         self._x, self._y = x, y
         column, row = _lines(x, n), _lines(y, n)
-        near = reach(max(int(n), 1), int(row.max()), int(column.max()))
+        N = max(int(n), 1)
+        near = reach(N, min(int(row.max()), N), min(int(column.max()), N))
         aside, above = int(near.out.max()), int(near.row[-1])
         width = int(column.max()) + 1 + 2 * aside
         self._size = (int(row.max()) + 1 + 2 * above) * width

@@ -52,8 +52,7 @@ class ParticleFilter:
                 innovations.append(self._update(reading, odometry))
             else:
                 self.ignored += 1
-        ahead = arc_motion(*extrapolation(t - odometry.t, odometry))
-        cloud = carried(self._cloud, ahead)
+        cloud = carried(self._cloud, arc_motion(*extrapolation(t - self._trail.end, odometry)))
         return Estimate(t, *summary(cloud), tuple(innovations), cloud)
 
     def _move(self, odometry: Odometry) -> None:

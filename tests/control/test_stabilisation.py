@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from hilbed.angles import wrap
 from hilbed.control.stabilisation import Gains, stabilising, within_wheel_limit
-from hilbed.types import Command, Pose
+from hilbed.types import Array, Command, Pose
 
 PRINTED = Gains(0.5, 0.7, 1.3, guard=0.0)
 ORIGIN = Pose(0.0, 0.0, 0.0)
@@ -23,11 +23,11 @@ def law(pose: Pose, goal: Pose, gains: Gains) -> tuple[float, float]:
     return float(u1), float(u2)
 
 
-def lyapunov(pose: np.ndarray, h: float) -> float:  # type: ignore[type-arg]
+def lyapunov(pose: Array, h: float) -> float:
     """V = e²/2 + (α² + h ψ²)/2."""
     x, y, yaw = pose
     psi = atan2(y, x)
-    return 0.5 * (x * x + y * y + wrap(yaw - psi) ** 2 + h * psi**2)
+    return float(0.5 * (x * x + y * y + wrap(yaw - psi) ** 2 + h * psi**2))
 
 
 @given(poses, poses)
@@ -79,7 +79,7 @@ def test_beyond_the_guard_both_laws_are_one(pose: Pose) -> None:
 
 @pytest.mark.parametrize("start", [(3, 3, 1.0), (-2, 1, 0.3), (1, -3, -2.5), (0.5, 2, 3.0)])
 def test_without_noise_the_lyapunov_function_falls_to_zero(start: tuple[float, float, float]) -> None:
-    def rates(_: float, p: np.ndarray) -> tuple[float, float, float]:  # type: ignore[type-arg]
+    def rates(_: float, p: Array) -> tuple[float, float, float]:
         u1, u2 = law(Pose(*p.tolist()), ORIGIN, PRINTED)
         return u1 * cos(p[2]), u1 * sin(p[2]), u2
 

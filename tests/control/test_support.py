@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -54,7 +56,8 @@ def far_apart(rng: np.random.Generator, count: int, scale: float) -> Array:
     return np.where(rng.random((2, count)) < 0.02, 1e6, 1.0) * blob(rng, count, scale)
 
 
-CLOUDS = [blob, stripe, lattice, ring, copies, strays, far_apart]
+MakeCloud = Callable[[np.random.Generator, int, float], Array]
+CLOUDS: list[MakeCloud] = [blob, stripe, lattice, ring, copies, strays, far_apart]
 
 
 @settings(max_examples=300)
@@ -64,7 +67,7 @@ CLOUDS = [blob, stripe, lattice, ring, copies, strays, far_apart]
     st.integers(1, 1200),
     st.sampled_from([0.01, 0.3, 0.6, 1.0, 2.0, 10.0, 100.0]),
 )
-def test_same_index_as_brute_force(cloud: type(blob), seed: int, count: int, scale: float) -> None:  # type: ignore[valid-type]
+def test_same_index_as_brute_force(cloud: MakeCloud, seed: int, count: int, scale: float) -> None:
     x, y = cloud(np.random.default_rng(seed), count, scale)
     assert most_supported(x, y) == brute(x, y)
 
@@ -82,12 +85,10 @@ def test_same_index_as_brute_force_where_pairs_are_just_one_unit_apart(
     assert most_supported(x, y) == brute(x, y)
 
 
-@pytest.mark.parametrize("cloud", CLOUDS)
+@pytest.mark.parametrize("cloud", CLOUDS[:-1])  # the last would need too large a grid
 @pytest.mark.parametrize("n", [0.25, 1.0, 2.0, 8.0, 32.0])
-def test_bounds_hold_and_counts_are_exact_at_any_side(cloud: type(blob), n: float) -> None:  # type: ignore[valid-type]
+def test_bounds_hold_and_counts_are_exact_at_any_side(cloud: MakeCloud, n: float) -> None:
     x, y = cloud(np.random.default_rng(3), 401, 2.0)
-    if np.ptp(x) * np.ptp(y) * n * n > 1e7:
-        pytest.skip("such a grid is never made")
     grid, everyone = Grid(x, y, n), np.arange(len(x))
     assert (grid.at_most(everyone) >= support(x, y)).all()
     np.testing.assert_array_equal(grid.exactly(everyone), support(x, y))
@@ -112,6 +113,7 @@ def test_a_large_cloud_of_many_levels() -> None:
     assert most_supported(x, y) == int(np.argmax(counts))
 
 
+@pytest.mark.filterwarnings("ignore:overflow")
 @pytest.mark.parametrize("bad", [[], [np.nan, 0.0], [np.inf, 0.0], [1e308, -1e308]])
 def test_what_has_no_support_is_refused(bad: list[float]) -> None:
     with pytest.raises(ValueError, match="support needs"):

@@ -19,7 +19,8 @@ STILL = Odometry(0, 0.0, 0.0, 0.0, 0.0)
 
 
 def make(seed: int = 1, start: Pose = START, **settings: object) -> ParticleFilter:
-    return ParticleFilter(ParticleFilterSpec(**settings), start, np.random.default_rng(seed))  # type: ignore[arg-type]
+    spec = ParticleFilterSpec.model_validate(settings)
+    return ParticleFilter(spec, start, np.random.default_rng(seed))
 
 
 def pose_reading(t: int, value: tuple[float, ...], std: tuple[float, ...] = STD) -> Reading:
@@ -53,6 +54,8 @@ def test_a_position_alone_is_a_reading_too() -> None:
 def test_a_told_standard_deviation_may_be_replaced() -> None:
     own = make(position_std=0.1, yaw_std=pi / 180).step(0, STILL, [pose_reading(0, START, (9, 9, 9))])
     told = make().step(0, STILL, [pose_reading(0, START)])
+    assert own.cloud is not None
+    assert told.cloud is not None
     np.testing.assert_array_equal(own.cloud, told.cloud)
 
 
@@ -66,6 +69,7 @@ def test_same_seed_same_cloud_to_the_bit_and_another_seed_another() -> None:
 
     first, second, other = run(1), run(1), run(2)
     assert first.cloud is not None
+    assert other.cloud is not None
     np.testing.assert_array_equal(first.cloud, second.cloud)
     np.testing.assert_array_equal(first.mean, second.mean)
     assert not np.array_equal(first.cloud, other.cloud)
@@ -170,10 +174,13 @@ def test_unusable_readings_are_counted_and_change_nothing(reading: Reading) -> N
 
 
 @pytest.mark.parametrize("way", [(nan, 0.0), (0.0, nan), (inf, 0.0), (1e9, 0.0)])
-def test_unusable_odometry_is_counted_and_moves_nothing(way: tuple[float, float]) -> None:
+def test_unusable_odometry_is_counted_and_its_speeds_bridge_the_gap(way: tuple[float, float]) -> None:
     particles = make()
-    estimate = particles.step(PERIOD, Odometry(PERIOD, *way, 0.0, 0.0), [])
+    estimate = particles.step(PERIOD, Odometry(PERIOD, *way, 0.5, 0.0), [])
     assert particles.ignored == 1
+    assert np.hypot(*(estimate.mean[:2] - START[:2])) == pytest.approx(0.025)
+    estimate = particles.step(PERIOD, Odometry(PERIOD, *way, nan, 0.0), [])
+    assert particles.ignored == 2
     assert estimate.mean == pytest.approx(START)
 
 
