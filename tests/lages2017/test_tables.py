@@ -28,12 +28,14 @@ def judge(error: Array) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 def test_table_2() -> None:
     """Printed: mean (0.9973, 3.0027, −1.5708), standard deviation (0.0203, 0.0139, 0.0014)."""
     judge(errors([final(seed) for seed in range(RUNS)]))
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 def test_table_3() -> None:
     """Printed: mean (1.0026, 2.9949, −1.5706), standard deviation (0.0212, 0.0109, 0.0014)."""
     runs = [(100 + 8 * k + j, start) for k in range(TRIES) for j, start in enumerate(STARTS)]
