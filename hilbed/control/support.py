@@ -12,11 +12,11 @@ from hilbed.control.support_grid import Grid, Ints, blocks, closer_than_one
 from hilbed.types import Array
 
 PROBED = 2**13  # so many pairs are tested to raise the bar before points are dropped
-CELLS = 32  # a grid may have so many a point
+CELLS = 64  # a grid may have so many a point
 LOOKUPS = 2**16  # so many, and the first grid is fine enough
 PAIRS = 2**16  # so few are tested without a grid
 SOME, MOST = 128, 2**20  # points that are counted at once at the end, and the pairs that these may have
-COARSEST, FINEST = 8.0, 1024.0  # cells a unit of the first grid, if it fits, and of the last
+COARSEST, FIRST, FINEST = 8.0, 32.0, 1024.0  # cells a unit: of the first grid if they fit, at most; of any
 
 
 class Leader(NamedTuple):
@@ -55,7 +55,9 @@ def most_supported(x: Array, y: Array) -> int:
 def _sides(count: int, width: float, height: float) -> Iterator[float]:
     """Yields how many cells a unit has, for ever finer grids that are worth their memory; at least once."""
     n = COARSEST
-    while _fits(2 * n, width, height, count) and count * (4 * n * min(height, 1) + 1) <= LOOKUPS:
+    while (
+        n < FIRST and _fits(2 * n, width, height, count) and count * (4 * n * min(height, 1) + 1) <= LOOKUPS
+    ):
         n *= 2
     while not _fits(n, width, height, count):
         n /= 2
