@@ -7,6 +7,7 @@ nanoseconds since the start of the run.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import nan
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:  # numpy takes a third of the time of `hilbed check`, which does not need it
@@ -44,7 +45,10 @@ class Pose(NamedTuple):
 
 
 class Command(NamedTuple):
-    """What a controller asks for: speed v (m/s) of the axle's midpoint and yaw rate w (rad/s)."""
+    """What a robot is asked for: speed v (m/s) and yaw rate w (rad/s) of the axle's midpoint.
+
+    A tricycle takes the speed of what is driven and, in place of w, the angle (rad) of its steering axis.
+    """
 
     v: float
     w: float
@@ -152,9 +156,10 @@ class Innovation(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """What an estimator believes at its t: mean (3,) x, y, yaw; covariance (3, 3).
+    """What an estimator believes at its t: mean (3,) x, y, yaw; covariance (3, 3), NaN where it states none.
 
-    innovations: those of the step that made it; cloud: (M, 3) particles where the estimator has them.
+    innovations: those of the step that made it; cloud: (M, 3) particles where the estimator has them;
+    landmark_distance: m, where one is estimated and known by now, else NaN.
     """
 
     t: Nanos
@@ -162,6 +167,7 @@ class Estimate(NamedTuple):
     covariance: Array
     innovations: tuple[Innovation, ...] = ()
     cloud: Array | None = None
+    landmark_distance: float = nan
 
 
 class ReferencePoint(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite, nan
+from math import isfinite
 
 import numpy as np
 
@@ -24,9 +24,9 @@ class Bearings:
     """One observer a landmark, fed with azimuths; A, index 0, is the map's origin, B is up its y axis.
 
     Readings are taken at their exposure; one without a name goes to the landmark that is expected nearest to
-    it. `landmark_distance`: l̂ (m), NaN until both were seen. `ignored` counts what cannot be used: odometry
-    and readings that are not finite, of another kind or beacon, nameless before both were seen, out of order,
-    too old or far ahead. Until both were seen the pose is the start as odometry carries it.
+    it. The estimate's landmark distance is NaN until both were seen. `ignored` counts what cannot be used:
+    odometry and readings that are not finite, of another kind or beacon, nameless before both were seen, out
+    of order, too old or far ahead. Until both were seen the pose is the start as odometry carries it.
     """
 
     def __init__(self, spec: BearingsSpec, start: Pose) -> None:
@@ -36,7 +36,6 @@ class Bearings:
         self._start = start
         self._t: Nanos = 0
         self._waiting = Waiting(nanos(spec.memory))
-        self.landmark_distance = nan
         self.ignored = 0
 
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
@@ -96,8 +95,8 @@ class Bearings:
             for s, track, turned in zip(states, self._tracks, ahead, strict=True)
         ]
         survey = surveyed(sights[0], sights[1])
-        self.landmark_distance = survey.l
-        return Estimate(t, np.array(survey[:3]), _covariance(survey, states), innovations)
+        covariance = _covariance(survey, states)
+        return Estimate(t, np.array(survey[:3]), covariance, innovations, landmark_distance=survey.l)
 
 
 def _covariance(survey: Survey, states: Sequence[State]) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite, nan
+from math import isfinite
 
 import numpy as np
 
@@ -29,7 +29,7 @@ class SurveyEstimator:
     """Landmarks as in `Bearings`: 0 is the map's origin, 1 is up its y axis. Readings need their names.
 
     It starts from the first exposure with both; until then the pose is the start as odometry carries it.
-    `landmark_distance`: l̂ (m), NaN until then. `ignored` counts what cannot be used.
+    So is the estimate's landmark distance unknown. `ignored` counts what cannot be used.
     """
 
     def __init__(self, spec: SurveySpec, start: Pose) -> None:
@@ -44,7 +44,6 @@ class SurveyEstimator:
         self._t: Nanos = 0
         self._memory = nanos(spec.memory)
         self._waiting = Waiting(self._memory)
-        self.landmark_distance = nan
         self.ignored = 0
 
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
@@ -60,9 +59,9 @@ class SurveyEstimator:
             self._ahead = self._through(self._belief, self._since)
         belief = moved_on(self._ahead, ahead, self._model)
         state = surveyed(belief.a, belief.b)
-        self.landmark_distance = state.l
         covariance = surveyed_covariance(state, sights_covariance(belief))[:3, :3]
-        return Estimate(t, np.array(state[:3]), covariance, tuple(i for i in innovations if i is not None))
+        told = tuple(innovation for innovation in innovations if innovation is not None)
+        return Estimate(t, np.array(state[:3]), covariance, told, landmark_distance=state.l)
 
     def _move(self, odometry: Odometry) -> None:
         if not usable(odometry) or odometry.t < self._t:

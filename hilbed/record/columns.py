@@ -144,6 +144,8 @@ def _poses(rows: Array) -> dict[str, np.ndarray]:
         "estimate": rows[:, 12:15],
         "covariance": rows[:, 15:24].reshape(-1, 3, 3),
     }
+    if not np.isnan(rows[:, 24]).all():
+        columns["landmark_distance"] = rows[:, 24]
     return {name: np.ascontiguousarray(column) for name, column in columns.items()}
 
 

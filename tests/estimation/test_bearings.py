@@ -70,7 +70,7 @@ def test_a_camera_that_is_slow_and_late_will_do(spec: BearingsSpec) -> None:
         left = error(drive, estimate.mean)
         drive.move()
     assert left < 0.02
-    assert estimator.landmark_distance == pytest.approx(1.0, abs=0.01)
+    assert estimate.landmark_distance == pytest.approx(1.0, abs=0.01)
     assert estimator.ignored == 0
 
 
@@ -119,7 +119,7 @@ def test_until_both_are_seen_the_start_is_carried_by_odometry() -> None:
         nameless = [azimuth(drive.t, drive.pose, 1, named=False)]
         estimate = estimator.step(drive.t, drive.odometry(), only_a + nameless)
         assert error(drive, estimate.mean) < 1e-3
-        assert np.isnan(estimator.landmark_distance)
+        assert np.isnan(estimate.landmark_distance)
         assert np.isnan(estimate.covariance).all()
         drive.move()
     assert estimator.ignored == 50

@@ -24,12 +24,11 @@ class Experiment(NamedTuple):
 
 
 class Run(NamedTuple):
-    """Rows at t = 0, T, …: poses (N, 3), commands (N, 2), and what else is asked of the estimator (N,)."""
+    """Rows at t = 0, T, …: poses (N, 3), beliefs (N, 3), commands (N, 2)."""
 
     truth: Array
     mean: Array
     command: Array
-    extra: Array
     estimates: list[Estimate]
 
 
@@ -38,25 +37,23 @@ def run(
     estimator: Estimator,
     controller: Controller,
     sensor: Sensor,
-    extra: Callable[[], float] = lambda: 0.0,
 ) -> Run:
     vehicle, start, period, duration = experiment
     plant = KinematicPlant(start, vehicle)
     base = IdealBase(plant, vehicle)
-    rows: list[tuple[Pose, Estimate, Command, float]] = []
+    rows: list[tuple[Pose, Estimate, Command]] = []
     for t in range(0, duration + 1, period):
         pose = plant.truth().pose
         estimate = estimator.step(t, base.read(t), sensor(t, pose))
         command = controller.step(t, estimate)
-        rows.append((pose, estimate, command, extra()))
+        rows.append((pose, estimate, command))
         base.write(t, command)
         plant.advance(t, t + period)
-    poses, estimates, commands, extras = zip(*rows, strict=True)
+    poses, estimates, commands = zip(*rows, strict=True)
     return Run(
         np.array(poses),
         np.array([e.mean for e in estimates]),
         np.array(commands),
-        np.array(extras),
         list(estimates),
     )
 
