@@ -37,13 +37,14 @@ class Effects:
     load_torque: N m at each wheel, positive against forward rotation; friction: coefficient under each
     wheel; radius: factor on each wheel's rolling radius; push: force (N, N) in the map on the body's
     centre of mass and torque (N m) about z; supply_drop: V off the supply's open-circuit voltage;
-    spurious: mean number of false azimuths a frame; blind: the camera delivers nothing; frames, babble: what
-    happens on the bus; bus_off, unpowered: names of nodes whose CAN controller, or whose logic, is off.
+    spurious: mean number of false azimuths a frame; blind: the camera delivers nothing; lost, broken: names
+    of sensors that deliver nothing, or NaN; frames, babble: what happens on the bus; bus_off, unpowered:
+    names of nodes whose CAN controller, or whose logic, is off.
     """
 
     __slots__ = (
-        "_friction", "babble", "blind", "bus_off", "frames", "friction", "load_torque", "push", "radius",
-        "spurious", "supply_drop", "unpowered",
+        "_friction", "babble", "blind", "broken", "bus_off", "frames", "friction", "load_torque", "lost",
+        "push", "radius", "spurious", "supply_drop", "unpowered",
     )  # fmt: skip
 
     def __init__(self, friction: Sequence[float]) -> None:
@@ -53,6 +54,8 @@ class Effects:
         self.radius: list[float] = []
         self.frames: list[FrameFault] = []
         self.babble: list[Babble] = []
+        self.lost: set[str] = set()
+        self.broken: set[str] = set()
         self.bus_off: set[str] = set()
         self.unpowered: set[str] = set()
         self.reset()
@@ -67,7 +70,7 @@ class Effects:
         self.supply_drop = 0.0
         self.spurious = 0.0
         self.blind = False
-        for knob in (self.frames, self.babble, self.bus_off, self.unpowered):
+        for knob in (self.frames, self.babble, self.lost, self.broken, self.bus_off, self.unpowered):
             knob.clear()
 
 

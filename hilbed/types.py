@@ -120,7 +120,8 @@ class Odometry(NamedTuple):
 class Reading(NamedTuple):
     """One measurement of the surroundings, without any truth in it.
 
-    kind: "azimuth" (rad, robot's frame, from the sensor's optical centre), "range" (m), "position" (m, m);
+    kind: "azimuth" (rad, robot's frame, from the sensor's optical centre), "range" (m), "position" (m, m),
+    "pose" (m, m, rad), "front" (m, m: of a marker ahead of the axle);
     t: exposure; delivered: when the controller gets it; value and std: one number a component;
     beacon: index in the scenario's list of beacons, None where the identity is unknown.
     """

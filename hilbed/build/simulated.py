@@ -15,7 +15,8 @@ from hilbed.build.bench import Bench
 from hilbed.build.carriage import join
 from hilbed.build.hands import Hands
 from hilbed.build.known import boot_of, nodes_of, start_of, surroundings
-from hilbed.build.minds import make_controller, make_estimator
+from hilbed.build.minds import Guidance, make_controller, make_estimator
+from hilbed.build.senses import Scene, kinds_of, make_sensors
 from hilbed.can.base import CanBase
 from hilbed.can.faults import Faults
 from hilbed.can.master import Master
@@ -41,8 +42,6 @@ from hilbed.robots.limited import Limited
 from hilbed.scenario import files
 from hilbed.scenario.load import Loaded
 from hilbed.scenario.model import Scenario
-from hilbed.sensors.camera import Camera, open_eye
-from hilbed.sensors.eye import Eye
 from hilbed.types import Nanos
 
 
@@ -80,10 +79,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
 
     effects = Effects([spec.friction] * len(robot.drives))
     schedule = _schedule(scenario, robot.drives, effects)
-    eyes = [open_eye(sensor, spec.beacons, cost, separate) for sensor in scenario.sensors.values()]
-    sensors = _sensors(scenario, eyes, effects, witness)
-    for sensor in sensors:
-        closing.callback(sensor.close)
+    sensors = make_sensors(scenario, Scene(spec.beacons, effects, witness, cost, separate), closing)
     body = _body(loaded)
     inertia = reflected_inertia(spec.motor, spec.gear)
     world = BulletWorld(body, spec, start, inertia, cost)
@@ -103,8 +99,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     rig = Rig(
         base,
         sensors,
-        make_estimator(scenario.estimator, surroundings(scenario, spec, start)),
-        make_controller(scenario.controller, reference, period),
+        make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
+        make_controller(scenario.controller, Guidance(reference, period, robot.command)),
         plant,
         period,
         cost,
@@ -114,9 +110,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     wake = elsewhere.wakers(nodes, carriage, terminals)
     master, power_on = Master(nodes, port, period), boot_of(scenario)
     hands = Hands(master, base, plant, carriage, flush, tick, period, wake, faults, power_on)
-    kinds = {"azimuth": 1} if sensors else {}
     return Bench(
-        rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
+        rig, start, reference, robot.drives, kinds_of(scenario), tuple(spec.beacons), tick,
         hands.boot, hands.stop, plant.ticks, hands.events, closing.close, nodes,
         carriage.due, lambda: elsewhere.late(base.late, terminals),
         lambda: {"nodes": {node.name: node.kind for node in nodes}, **carriage.account()}, power_on,
@@ -138,15 +133,6 @@ def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> 
             (spec, DISTURBANCES[spec.kind](spec, wheel, rng.stream(scenario.seed, f"disturbances.{k}")))
         )
     return Schedule(entries, effects)
-
-
-def _sensors(
-    scenario: Scenario, eyes: Sequence[Eye], effects: Effects, witness: Witness
-) -> tuple[Camera, ...]:
-    return tuple(
-        Camera(spec, eye, rng.stream(scenario.seed, f"sensors.{name}"), effects, witness)
-        for (name, spec), eye in zip(scenario.sensors.items(), eyes, strict=True)
-    )
 
 
 def _body(loaded: Loaded) -> Body:
