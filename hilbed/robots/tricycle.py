@@ -11,6 +11,9 @@ from pydantic import Field
 from hilbed.spec import Finite, Listed, Positive, Spec
 from hilbed.types import Command
 
+STEERING = "steering"
+"""Name of the drive that holds an angle instead of a speed."""
+
 Twist = tuple[float, float]
 """Speed of the rear axle's midpoint (m/s) and yaw rate (rad/s)."""
 
@@ -22,8 +25,9 @@ class TricycleSpec(Spec):
 
     drive: front (type 1: the command's speed is the front wheel's) or rear (type 2: it is that of the rear
     axle's midpoint); differential: whether the rear wheels, a motor each, are told apart in curves, else both
-    turn alike and slip; max_speed m/s, max_steering rad: the command is limited to them; start: pose at
-    t = 0, null for where the reference starts. d of the paper is free: 1 m.
+    turn alike and slip; max_speed m/s, max_steering rad: the command is limited to them; max_steering_rate
+    rad/s: what the drive of the steering axis is told at boot never to exceed; start: pose at t = 0, null for
+    where the reference starts. d of the paper is free: 1 m.
     """
 
     kind: Literal["tricycle"] = "tricycle"
@@ -34,8 +38,14 @@ class TricycleSpec(Spec):
     wheel_radius: Positive = 0.1
     max_speed: Positive = 1.74
     max_steering: Annotated[float, Field(gt=0, le=STEEPEST)] = pi / 4
+    max_steering_rate: Positive = 2.0
     urdf: str = "package:urdf/tricycle.urdf"
     start: Listed[tuple[Finite, Finite, Finite]] | None = None
+
+    @property
+    def drives(self) -> tuple[str, ...]:
+        """Names of its drives, in the order in which everybody lists them: the steering axis comes last."""
+        return ("traction", STEERING) if self.drive == "front" else ("left", "right", STEERING)
 
 
 def front_drive(command: Command, d: float) -> Twist:
@@ -76,7 +86,7 @@ class Tricycle:
         self._spec = spec
         self._front = spec.drive == "front"
         self._twist = TWISTS[spec.drive]
-        self.drives = ("traction", "steering") if self._front else ("left", "right", "steering")
+        self.drives = spec.drives
 
     def limited(self, command: Command) -> Command:
         """Returns the command within the limits of speed and steering angle."""
@@ -99,19 +109,20 @@ class Tricycle:
         return self.limited(Command(v / cos(γ) if self._front else v, γ))
 
     def wheel_speeds(self, command: Command) -> tuple[float, ...]:
-        """Returns rad/s of each driven wheel, in the order of `drives`; steering is told its angle."""
+        """Returns rad/s of each driven wheel, in the order of `drives`, and last the steering angle (rad)."""
         R = self._spec.wheel_radius
+        γ = command[1]
         if self._front:
-            return (command[0] / R,)
+            return command[0] / R, γ
         v, w = self.twist(command)
         difference = 0.5 * self._spec.track * w if self._spec.differential else 0.0
-        return (v - difference) / R, (v + difference) / R
+        return (v - difference) / R, (v + difference) / R, γ
 
-    def travel(self, turned: Sequence[float], angle: float) -> tuple[float, float]:
+    def travel(self, turned: Sequence[float]) -> Twist:
         """Returns way (m) and turn (rad) of the axle, or v and w, for angles (rad) or rates of driven wheels.
 
-        angle: of the steering axis (rad) meanwhile; where it moved, that of the middle, which is second order
-        in the change. While it is held the way is an arc, exactly.
+        The last number is the angle of the steering axis (rad) meanwhile; where it moved, that of the middle,
+        which is second order in the change. While it is held the way is an arc, exactly.
         """
-        rolled = self._spec.wheel_radius * sum(turned) / len(turned)
-        return self.twist(Command(rolled, angle))
+        *wheels, angle = turned
+        return self.twist(Command(self._spec.wheel_radius * sum(wheels) / len(wheels), angle))

@@ -55,8 +55,8 @@ def test_a_command_that_gives_a_twist_is_found_from_it(v: float, γ: float, d: f
 def test_odometry_is_the_exact_arc(v: float, γ: float, drive: str, T: float) -> None:
     """Wheels that turned as commanded tell the way; the pose is that of the paper's equations by scipy."""
     robot, d = tricycle(drive=drive, wheelbase=0.8), 0.8
-    turned = [w * T for w in robot.wheel_speeds(Command(v, γ))]
-    distance, turn = robot.travel(turned, γ)
+    *rates_of_wheels, angle = robot.wheel_speeds(Command(v, γ))
+    distance, turn = robot.travel([*[w * T for w in rates_of_wheels], angle])
     if drive == "front":
         rates = lambda _, p: (v * cos(γ) * cos(p[2]), v * cos(γ) * sin(p[2]), v * sin(γ) / d)  # noqa: E731
     else:
@@ -67,10 +67,11 @@ def test_odometry_is_the_exact_arc(v: float, γ: float, drive: str, T: float) ->
 
 def test_rear_wheels_share_the_turn_or_do_not() -> None:
     γ = 0.3
-    left, right = tricycle(track=0.6, wheel_radius=0.1).wheel_speeds(Command(1.0, γ))
+    left, right, angle = tricycle(track=0.6, wheel_radius=0.1).wheel_speeds(Command(1.0, γ))
+    assert angle == γ
     assert left == pytest.approx((1 - 0.3 * tan(γ)) / 0.1)
     assert right == pytest.approx((1 + 0.3 * tan(γ)) / 0.1)
-    assert tricycle(differential=False).wheel_speeds(Command(1.0, γ)) == pytest.approx((10, 10))
+    assert tricycle(differential=False).wheel_speeds(Command(1.0, γ)) == pytest.approx((10, 10, γ))
     assert tricycle().drives == ("left", "right", "steering")
     assert tricycle(drive="front").drives == ("traction", "steering")
 
@@ -82,7 +83,7 @@ def test_at_standstill_the_wheel_turns_and_waits(drive: str) -> None:
     assert robot.command(0.0, 0.4) == (0.0, pi / 4)
     assert robot.command(0.0, -0.4) == (0.0, -pi / 4)
     assert robot.twist(Command(0.0, 0.7)) == (0.0, 0.0)
-    assert robot.travel([0.0], 0.5) == (0.0, 0.0)
+    assert robot.travel([0.0] * (len(robot.drives) - 1) + [0.5]) == (0.0, 0.0)
 
 
 def test_in_reverse_the_steering_is_that_of_the_curve_not_of_atan2() -> None:
