@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from hilbed import rng
 from hilbed.build.bench import BOOT
-from hilbed.build.minds import Surroundings
+from hilbed.build.minds import ESTIMATOR_STREAM, Surroundings
 from hilbed.can.node import Node
 from hilbed.can.specs import resolve
 from hilbed.clock import SECOND
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.ports import Reference
 from hilbed.scenario.model import Scenario
+from hilbed.scene import BeaconSpec
+from hilbed.sensors.mounts import mounts
 from hilbed.types import Nanos, Pose
 
 
@@ -29,10 +32,11 @@ def boot_of(scenario: Scenario) -> Nanos:
     return BOOT if scenario.realtime is None or not away else scenario.realtime.boot * SECOND
 
 
-def surroundings(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings:
+def surroundings(scenario: Scenario, beacons: Sequence[BeaconSpec], start: Pose) -> Surroundings:
     """Returns what an estimator knows from the start."""
-    mounts = [sensor.mount[:2] for sensor in scenario.sensors.values()]
-    return Surroundings([beacon.at for beacon in spec.beacons], start, mounts[0] if mounts else (0.0, 0.0))
+    mount = next(iter(mounts(scenario.sensors).values()), (0.0, 0.0))
+    chance = rng.stream(scenario.seed, ESTIMATOR_STREAM)
+    return Surroundings([beacon.at for beacon in beacons], start, mount, chance)
 
 
 def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> tuple[Node, ...]:

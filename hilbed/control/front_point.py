@@ -37,7 +37,8 @@ def front_point_twist(wanted: Vector, heading: float, ahead: float) -> tuple[flo
 class FrontPoint:
     """ż = ż_d − k (z − z_d): with the true heading the error decays as exp(−k t), whatever the robot's pose.
 
-    The reference's position is z_d. z is the estimate's.
+    z_d (free in the paper) is the front point of a robot on the reference, so that the axle comes to the
+    reference as well. z is the estimate's.
     """
 
     def __init__(self, spec: FrontPointSpec, reference: Reference) -> None:
@@ -49,8 +50,10 @@ class FrontPoint:
         spec = self._spec
         x, y, yaw = estimate.mean.tolist()
         zx, zy = front_point((x, y, yaw), spec.ahead)
-        (dx, dy, course), v, _ = self._reference.at(t)
-        wanted = v * cos(course) - spec.gain * (zx - dx), v * sin(course) - spec.gain * (zy - dy)
+        pose, v, w = self._reference.at(t)
+        dx, dy = front_point(pose, spec.ahead)
+        c, s, aside = cos(pose.yaw), sin(pose.yaw), spec.ahead * w
+        wanted = v * c - aside * s - spec.gain * (zx - dx), v * s + aside * c - spec.gain * (zy - dy)
         speed, turn_rate = front_point_twist(wanted, yaw, spec.ahead)
         return Command(
             min(max(speed, -spec.max_speed), spec.max_speed),

@@ -40,6 +40,10 @@ class LyapunovTracking:
         self._reference = reference
         self.beyond = 0
 
+    def counts(self) -> dict[str, float]:
+        """Returns in how many cycles the law was asked for what it was not made for."""
+        return {"beyond": self.beyond}
+
     def step(self, t: Nanos, estimate: Estimate) -> Command:
         """Returns v (m/s) and w (rad/s) for the period from `t`."""
         x, y, yaw = estimate.mean.tolist()

@@ -48,6 +48,10 @@ class PathFollowing:
         self._spec = spec
         self.beyond = 0
 
+    def counts(self) -> dict[str, float]:
+        """Returns in how many cycles the law was asked for what it was not made for."""
+        return {"beyond": self.beyond}
+
     def step(self, t: Nanos, estimate: Estimate) -> Command:  # noqa: ARG002
         """Returns v (m/s) and w (rad/s) for the period from `t`."""
         _, y, yaw = estimate.mean.tolist()

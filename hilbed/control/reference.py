@@ -163,5 +163,3 @@ def rounded(points: Sequence[Point], radius: float) -> list[Arc]:
             arcs.append(Arc(radius * abs(turns[i]), (1 if turns[i] > 0 else -1) / radius))
     return [arc for arc in arcs if arc.length > 0]
 
-
-ReferenceSpec = LineSpec | CircleSpec | StadiumSpec | FigureEightSpec | WaypointsSpec

@@ -38,6 +38,10 @@ class Attitude:
         self._waiting = Waiting(self._memory)
         self.ignored = 0
 
+    def counts(self) -> dict[str, float]:
+        """Returns how much odometry and how many readings could not be used."""
+        return {"ignored": self.ignored}
+
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""
         self._move(odometry)

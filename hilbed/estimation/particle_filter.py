@@ -43,6 +43,15 @@ class ParticleFilter:
         self.ignored = self.unexplained = self.recovered = 0
         self.effective = nan
 
+    def counts(self) -> dict[str, float]:
+        """Returns the counters, and the effective sample size at the last reading."""
+        return {
+            "ignored": self.ignored,
+            "unexplained": self.unexplained,
+            "recovered": self.recovered,
+            "effective": self.effective,
+        }
+
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the cloud at `t`, extrapolated beyond the odometry."""
         self._move(odometry)

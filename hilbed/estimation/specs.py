@@ -82,5 +82,3 @@ class DeadReckoningSpec(Spec):
     initial_std: Listed[tuple[Deviation, Deviation, Deviation]] = (0.01, 0.01, 0.01)
     odometry: OdometrySpec = OdometrySpec()
 
-
-EstimatorSpec = EkfSpec | DeadReckoningSpec

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from hilbed.clock import seconds
 from hilbed.plant.kinematics import Integrator, Twist, advanced, exact
+from hilbed.ports import Sensor
 from hilbed.types import Command, Nanos, Odometry, Pose, Truth
 
 
@@ -26,17 +27,27 @@ class Vehicle(NamedTuple):
 
 
 class KinematicPlant:
-    """A pose that moves with the command held; `obey` takes effect from the next `advance`."""
+    """A pose that moves with the command held; `obey` takes effect from the next `advance`.
 
-    def __init__(self, start: Pose, vehicle: Vehicle) -> None:
+    Sensors see it at the moments at which they are due, also within a period.
+    """
+
+    def __init__(self, start: Pose, vehicle: Vehicle, sensors: Sequence[Sensor] = ()) -> None:
         self._pose = start
         self._vehicle = vehicle
+        self._sensors = tuple(sensors)
         self._command = Command(0.0, 0.0)
         self._t: Nanos = 0
 
     def truth(self) -> Truth:
         """Returns the pose now."""
         return Truth(self._t, self._pose)
+
+    def start(self) -> None:
+        """Lets sensors take their first samples, those at t = 0."""
+        for sensor in self._sensors:
+            if sensor.due <= 0:
+                sensor.sample(self.truth())
 
     def obey(self, command: Command) -> None:
         """Takes over a command for the coming periods."""
@@ -47,8 +58,14 @@ class KinematicPlant:
         of = self._vehicle
         command = of.limited(of.command_noise(self._command))
         twist = of.twist_noise(of.twist(command))
-        self._pose = advanced(self._pose, twist, seconds(end - start), of.integrator, of.steps)
-        self._t = end
+
+        def pose(t: Nanos) -> Pose:
+            return advanced(self._pose, twist, seconds(t - start), of.integrator, of.steps)
+
+        for sensor in self._sensors:
+            while sensor.due <= end:
+                sensor.sample(Truth(sensor.due, pose(sensor.due)))
+        self._pose, self._t = pose(end), end
 
 
 class IdealBase:

@@ -20,7 +20,7 @@ from hilbed.plant import KinematicSpec, PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.plant.chopper import Switched, periods
 from hilbed.plant.urdf import diffdrive, meshes
 from hilbed.problems import Problem, nearest
-from hilbed.robots import ROBOTS, RobotSpec
+from hilbed.robots import RobotSpec
 from hilbed.scenario import files, sensing
 from hilbed.sensors import SensorSpec
 from hilbed.types import ScenarioError
@@ -76,7 +76,7 @@ def _nodes(
             yield Problem(("nodes",), "nodes: an ideal robot has no drives on a bus; plant: bullet has")
         return
     try:
-        resolved = resolve(nodes, ROBOTS[robot.kind].drives)
+        resolved = resolve(nodes, robot.drives)
     except ScenarioError as error:
         yield from (Problem(("nodes",), line) for line in str(error).splitlines())
         return
@@ -189,7 +189,7 @@ def _disturbed(
     robot: RobotSpec,
     nodes: Mapping[str, NodeSpec],
 ) -> Problems:
-    drives = ROBOTS[robot.kind].drives
+    drives = robot.drives
     for k, disturbance in enumerate(disturbances):
         place = f"disturbances.{k}"
         drive = getattr(disturbance, "drive", None)
@@ -205,7 +205,7 @@ def _bus_faults(
     disturbances: list[DisturbanceSpec], robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec
 ) -> Problems:
     """A fault of the bus needs the node or the frames that it is about."""
-    drives = ROBOTS[robot.kind].drives
+    drives = robot.drives
     with suppress(ScenarioError):
         sent = senders(resolve(nodes, drives))
         for k, fault in enumerate(disturbances):
@@ -236,7 +236,7 @@ def _no_such(
 
 
 def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems:
-    drives = ROBOTS[robot.kind].drives
+    drives = robot.drives
     for name, criterion in criteria.items():
         if criterion.drive is not None and criterion.drive not in drives:
             known = nearest(criterion.drive, drives)

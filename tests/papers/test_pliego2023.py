@@ -33,7 +33,7 @@ def front_error(result: Run, reference: PathReference) -> Array:
     """|z − z_d| of the true front point over the run (m)."""
     rows = []
     for k, pose in enumerate(result.truth.tolist()):
-        (x, y, _), _, _ = reference.at(k * PERIOD)
+        x, y = front_point(reference.at(k * PERIOD).pose, SPEC.ahead)
         zx, zy = front_point(tuple(pose), SPEC.ahead)
         rows.append(hypot(zx - x, zy - y))
     return np.array(rows)
@@ -65,10 +65,10 @@ def test_with_the_heading_known_the_error_decays_as_told() -> None:
     law = FrontPoint(SPEC, CIRCLE)
     fine = run(Experiment(UNICYCLE, start, 1_000_000, 4 * 10**9), Known(), law, pose_sensor)
     t = np.arange(0, 4.0005, 1e-3)
-    wanted = [CIRCLE.at(k * 1_000_000).pose for k in range(4001)]
+    wanted = [front_point(CIRCLE.at(k * 1_000_000).pose, 0.1) for k in range(4001)]
     errors = [
-        hypot(zx - d.x, zy - d.y)
-        for d, (zx, zy) in zip(wanted, (front_point(tuple(p), 0.1) for p in fine.truth.tolist()), strict=True)
+        hypot(zx - dx, zy - dy)
+        for (dx, dy), (zx, zy) in zip(wanted, (front_point(tuple(p), 0.1) for p in fine.truth.tolist()), strict=True)
     ]
     np.testing.assert_allclose(errors, errors[0] * np.exp(-t), atol=2e-3)
     assert errors[-1] < errors[0] * exp(-4) + 2e-3
@@ -119,6 +119,6 @@ def test_a_tricycle_is_led_by_its_front_point_too() -> None:
     experiment = Experiment(Vehicle(robot.twist, robot.limited), start, PERIOD, 20 * 10**9)
     result = run(experiment, Attitude(AttitudeSpec(gain=20.0, heading_error=0.3), start), law, position)
     z = front_point(tuple(result.truth[-1].tolist()), 0.3)
-    d = CIRCLE.at(20 * 10**9).pose
-    assert hypot(z[0] - d.x, z[1] - d.y) < 5e-3
+    d = front_point(CIRCLE.at(20 * 10**9).pose, 0.3)
+    assert hypot(z[0] - d[0], z[1] - d[1]) < 5e-3
     assert abs(result.command[:, 1]).max() <= 1.2 < pi / 2
