@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from collections.abc import Sequence
-from math import isfinite
 
 import numpy as np
 
@@ -16,8 +15,11 @@ from hilbed.estimation.attitude_observers import OBSERVERS
 from hilbed.estimation.attitude_spec import AttitudeSpec
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
+from hilbed.estimation.readable import readable
 from hilbed.estimation.ways import Waiting, Way, split
 from hilbed.types import Estimate, Nanos, Odometry, Pose, Reading
+
+SIZES = {"position": 2}
 
 
 class Attitude:
@@ -78,10 +80,10 @@ class Attitude:
         """Corrects the heading at the exposure by the way since the last one."""
         fresh = self._seen is None or reading.t > self._seen
         known = not self._since or reading.t >= self._since[0].start
-        if reading.kind != "position" or not all(map(isfinite, reading.value)) or not (fresh and known):
+        if not (readable(reading, SIZES) and fresh and known):
             self.ignored += 1
             return
-        place = complex(*reading.value[:2])
+        place = complex(*reading.value)
         before, after = split(self._since, reading.t)
         motion = through(before)
         if self._seen is None:  # nothing to compare with: only the turn

@@ -14,10 +14,13 @@ from hilbed.estimation.bearing_specs import BearingsSpec
 from hilbed.estimation.bearing_track import Track
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
+from hilbed.estimation.readable import readable
 from hilbed.estimation.sights import Sight, Survey, angle, surveyed, surveyed_covariance
 from hilbed.estimation.ways import Waiting, Way
 from hilbed.poses import moved
 from hilbed.types import Array, Estimate, Innovation, Nanos, Odometry, Pose, Reading
+
+SIZES = {"azimuth": 1}
 
 
 class Bearings:
@@ -73,7 +76,7 @@ class Bearings:
 
     def _take(self, reading: Reading) -> float | None:
         """Measures; returns the NIS, None where the reading cannot be used."""
-        if reading.kind != "azimuth" or not isfinite(reading.value[0]):
+        if not readable(reading, SIZES):
             return None
         phi = angle(reading.value[0])
         track = self._owner(reading.beacon, phi)

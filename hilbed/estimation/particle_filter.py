@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite, nan
+from math import nan
 
 import numpy as np
 
@@ -13,11 +13,11 @@ from hilbed.estimation.cloud import WayNoise, cloud_of, lattice, predicted, summ
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.importance import importance, squared_distances
 from hilbed.estimation.particle_spec import ParticleFilterSpec
+from hilbed.estimation.readable import readable
 from hilbed.estimation.resampling import RESAMPLERS, effective_sample_size
 from hilbed.estimation.trail import Trail, arc_motion, carried, inverse
 from hilbed.types import Array, Estimate, Innovation, Nanos, Odometry, Pose, Reading, Rng
 
-LARGEST = 1e6  # m or rad: beyond it a reading or its standard deviation is not one
 SIZES = {"position": 2, "pose": 3}
 
 
@@ -57,7 +57,7 @@ class ParticleFilter:
         self._move(odometry)
         innovations = []
         for reading in sorted(readings, key=lambda reading: reading.t):
-            if reading.t <= t and self._readable(reading) and self._trail.remembers(reading.t):
+            if reading.t <= t and readable(reading, SIZES) and self._trail.remembers(reading.t):
                 innovations.append(self._update(reading, odometry))
             else:
                 self.ignored += 1
@@ -70,13 +70,6 @@ class ParticleFilter:
             return
         self._trail.extend(odometry.t, odometry.distance, odometry.turn)
         self._cloud = predicted(self._cloud, odometry.distance, odometry.turn, self._noise, self._rng)
-
-    def _readable(self, reading: Reading) -> bool:
-        size = SIZES.get(reading.kind)
-        if size is None or len(reading.value) != size or len(reading.std) != size:
-            return False
-        fine = all(isfinite(v) and abs(v) < LARGEST for v in reading.value)
-        return fine and all(0 < s < LARGEST for s in reading.std)
 
     def _update(self, reading: Reading, odometry: Odometry) -> Innovation:
         """Resamples by a reading; returns how its prediction by the whole cloud compared with it."""

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite
-
 import numpy as np
 
 from hilbed.clock import nanos
 from hilbed.estimation.bearing_specs import SurveySpec
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
+from hilbed.estimation.readable import readable
 from hilbed.estimation.sights import Sight, angle, surveyed, surveyed_covariance
 from hilbed.estimation.survey_filter import (
     Belief,
@@ -23,6 +22,8 @@ from hilbed.estimation.survey_filter import (
 from hilbed.estimation.ways import Waiting, Way, split
 from hilbed.poses import moved
 from hilbed.types import Estimate, Innovation, Nanos, Odometry, Pose, Reading
+
+SIZES = {"azimuth": 1}
 
 
 class SurveyEstimator:
@@ -83,7 +84,7 @@ class SurveyEstimator:
 
     def _take(self, reading: Reading) -> Innovation | None:
         """Measures; None where the reading starts the filter or cannot be used."""
-        fits = reading.kind == "azimuth" and reading.beacon in (0, 1) and isfinite(reading.value[0])
+        fits = reading.beacon in (0, 1) and readable(reading, SIZES)
         if not fits or reading.t < self._seen or (self._since and reading.t < self._since[0].start):
             self.ignored += 1
             return None
