@@ -146,4 +146,14 @@ def _nodes(part: Mapping[str, str]) -> str:
     return "drives: " + ", ".join(f"{name} {kind}" for name, kind in part.items())
 
 
-_PARTS = {"nodes": _nodes, "realtime": _realtime, "adapter": _adapter}
+def _counts(part: Mapping[str, Mapping[str, float | None]]) -> str:
+    """Tells what was counted, where it was anything at all."""
+    told = [
+        f"{name}: " + ", ".join(f"{key} {value:.4g}" for key, value in counts.items() if value)
+        for name, counts in part.items()
+        if any(counts.values())
+    ]
+    return "\n".join(told)
+
+
+_PARTS = {"counts": _counts, "nodes": _nodes, "realtime": _realtime, "adapter": _adapter}
