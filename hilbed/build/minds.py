@@ -91,9 +91,16 @@ def _attitude(spec: Any, known: Surroundings) -> Estimator:
     return Attitude(spec, known.start)
 
 
+def _measured(spec: Any, known: Surroundings) -> Estimator:
+    from hilbed.estimation.measured import Measured
+
+    return Measured(spec, known.start)
+
+
 ESTIMATORS: dict[str, Callable[[Any, Surroundings], Estimator]] = {
     "ekf": _ekf, "odometry": _odometry, "bearing_lyapunov": _bearings, "bearing_kalman": _bearings,
     "bearing_luenberger": _bearings, "bearing_survey": _survey, "particles": _particles, "attitude": _attitude,
+    "measured": _measured,
 }  # fmt: skip
 
 

@@ -52,9 +52,10 @@ _RUN_UNITS = {
         "reference_distance_max": "m",
         "reference_distance_final": "m",
         "reference_yaw_rms": "rad",
+        "reference_yaw_max": "rad",
         "reference_yaw_final": "rad",
-        "front_distance_rms": "m",
-        "front_distance_max": "m",
+        "turning_radius": "m",
+        "landmark_distance_error_max": "m",
     },
     "consistency": {
         "nees_mean": "",

@@ -75,19 +75,30 @@ def reference_yaw_rms(signals: Signals) -> float:
     return rms(turned(signals, "reference"))
 
 
+def reference_yaw_max(signals: Signals) -> float:
+    """Difference in yaw between truth and reference, largest."""
+    return largest(np.abs(turned(signals, "reference")))
+
+
 def reference_yaw_final(signals: Signals) -> float:
     """Difference in yaw between truth and reference, at the end."""
     return last(np.abs(turned(signals, "reference")))
 
 
-def front_distance_rms(signals: Signals) -> float:
-    """Distance between the true front marker and the reference at the same time, root mean square."""
-    return rms(front_distance(signals))
+def turning_radius(signals: Signals) -> float:
+    """Length of the way over its turn, each cycle's way taken for an arc."""
+    truth = signals["truth"]
+    turn = wrapped(np.diff(truth[:, 2]))
+    chords = np.hypot(*np.diff(truth[:, :2], axis=0).T)
+    total = float(np.abs(turn).sum())
+    return float((chords / np.sinc(turn / (2 * np.pi))).sum()) / total if total else inf
 
 
-def front_distance_max(signals: Signals) -> float:
-    """Distance between the true front marker and the reference at the same time, largest."""
-    return largest(front_distance(signals))
+def landmark_distance_error_max(signals: Signals) -> float:
+    """Estimated minus true distance of the first two beacons, largest magnitude."""
+    estimated = signals["landmark_distance"]
+    first, second = signals["beacons"][:2]
+    return largest(np.abs(estimated - np.hypot(*(second - first))))
 
 
 def cross_track_rms(signals: Signals) -> float:
@@ -104,13 +115,6 @@ def distance(signals: Signals, name: str) -> Column:
     """Returns the distance (N,) in m between truth and another pose."""
     difference = signals[name][:, :2] - signals["truth"][:, :2]
     return np.asarray(np.hypot(difference[:, 0], difference[:, 1]))
-
-
-def front_distance(signals: Signals) -> Column:
-    """Returns the distance (K,) in m between front marker, when it was seen, and the reference then."""
-    seen, marker = signals["front/t"], signals["front/true"]
-    x, y = (np.interp(seen, signals["t"], signals["reference"][:, axis]) for axis in (0, 1))
-    return np.asarray(np.hypot(marker[:, 0] - x, marker[:, 1] - y))
 
 
 def turned(signals: Signals, name: str) -> Column:

@@ -7,6 +7,7 @@ from hilbed.estimation.bearing_specs import (
     LyapunovObserverSpec,
     SurveySpec,
 )
+from hilbed.estimation.measured_spec import MeasuredSpec
 from hilbed.estimation.particle_spec import ParticleFilterSpec
 from hilbed.estimation.specs import DeadReckoningSpec, EkfSpec
 
@@ -19,6 +20,7 @@ EstimatorSpec = (
     | SurveySpec
     | ParticleFilterSpec
     | AttitudeSpec
+    | MeasuredSpec
 )
 
 __all__ = ["DeadReckoningSpec", "EkfSpec", "EstimatorSpec"]

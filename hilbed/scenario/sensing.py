@@ -20,6 +20,7 @@ FOOD = {
     "ekf": ("azimuth", "range"),
     "particles": ("position", "pose"),
     "attitude": ("position",),
+    "measured": ("pose",),
     "bearing_lyapunov": ("azimuth",),
     "bearing_kalman": ("azimuth",),
     "bearing_luenberger": ("azimuth",),

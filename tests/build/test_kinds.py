@@ -28,7 +28,7 @@ def kinds(union: Any) -> list[str]:
         (DisturbanceSpec, DISTURBANCES),
         (EstimatorSpec, ESTIMATORS),
         (ControllerSpec, CONTROLLERS),
-        (PlantSpec, {"bullet": None, "recorded": None}),
+        (PlantSpec, dict.fromkeys(("bullet", "kinematic", "recorded"))),
     ],
 )
 def test_every_kind_has_a_row_and_every_row_a_kind(union: Any, table: Mapping[str, Any]) -> None:
