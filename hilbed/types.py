@@ -93,12 +93,15 @@ class Transfer(NamedTuple):
 class DriveSignals(NamedTuple):
     """One drive as the controller sees it: what it asked for and what came back over the bus.
 
-    speed_ref, speed_measured: rad/s at the wheel; current_measured: A; NaN until the first PDO.
+    speed_ref, speed_measured: rad/s at the wheel; current_measured: A; NaN until the first PDO. angle_ref,
+    angle_measured: rad, of a steering axis, whose speed_ref is its drive's own affair.
     """
 
     speed_ref: float
     speed_measured: float
     current_measured: float
+    angle_ref: float = nan
+    angle_measured: float = nan
 
 
 class Odometry(NamedTuple):

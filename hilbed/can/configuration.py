@@ -35,7 +35,7 @@ def steps(axes: Sequence[Node], period: Nanos) -> Iterator[Step]:
         yield from _pdo(node, name, pdo)
     for axis in axes:
         yield axis.of("mode"), table.modes[axis.mode]
-        yield axis.of("target_velocity"), 0
+        yield axis.of(table.target), 0
 
 
 def _settings(axis: Node) -> Iterator[Step]:

@@ -76,6 +76,8 @@ class Master:
             raise BusError(f"{node}: told to start, but its heartbeat (1017) says {state}")
         for axis in axes:
             _enable(link, sdo, axis)
+            if axis.table.homes:
+                _home(link, sdo, axis)
         twins.check(node, sdo.asked - before)
 
 
@@ -136,6 +138,25 @@ def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
             sdo.write(control.index, control.sub, control.type, word)
         link.step()
     _check_enabled(sdo, node)
+
+
+def _home(link: Link, sdo: SdoClient, node: Node) -> None:
+    """Has the drive find its zero by the method that it has been told, then gives it its own mode back."""
+    control, mode = node.of("controlword"), node.of("mode")
+    sdo.write(mode.index, mode.sub, mode.type, node.table.modes["homing"])
+    sdo.write(control.index, control.sub, control.type, cia402.HOME)
+    deadline = link.t + _for(node, STATE_TIMEOUT)
+    while not _statusword(sdo, node) & cia402.HOMED:
+        if link.t >= deadline:
+            raise BusError(f"{node}: told to home (bit 4 of 6040), but does not say that it has")
+        link.step()
+    sdo.write(control.index, control.sub, control.type, cia402.ENABLE_OPERATION)
+    target = node.of(node.table.target)
+    here = node.of("position_actual")
+    position = sdo.read(here.index, here.sub, here.type)
+    sdo.write(target.index, target.sub, target.type, position)
+    sdo.write(mode.index, mode.sub, mode.type, node.table.modes[node.mode])
+    _await_mode(link, sdo, node)
 
 
 def _statusword(sdo: SdoClient, node: Node) -> int:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from hilbed.can.specs import BusSpec, NodeSpec, TerminalSpec
+from hilbed.can.specs import BusSpec, NodeSpec, TerminalSpec, with_table
 from hilbed.control import ControllerSpec, ReferenceSpec
 from hilbed.criteria import CriterionSpec
 from hilbed.disturbances import DisturbanceSpec
@@ -28,6 +28,16 @@ DIFFDRIVE_BY_DEFAULT = BeforeValidator(_diffdrive)
 """On the robot's block: without a kind it is a differential drive."""
 
 
+def _tables(value: Any) -> Any:
+    if not isinstance(value, dict):
+        return value
+    return {name: with_table(name, block) for name, block in value.items()}
+
+
+TABLES_BY_NAME = BeforeValidator(_tables)
+"""On the drives: the steering axis is of the type that holds a position."""
+
+
 class Scenario(Spec):
     """One experiment: duration and period in s; blocks as their own models say.
 
@@ -40,7 +50,7 @@ class Scenario(Spec):
     period: Positive = 0.01
     robot: Annotated[RobotSpec, ByKind, DIFFDRIVE_BY_DEFAULT, Word] = DiffDriveSpec()
     plant: Annotated[PlantSpec, ByKind, Word]
-    nodes: dict[str, Annotated[NodeSpec, Word]] = {}
+    nodes: Annotated[dict[str, Annotated[NodeSpec, Word]], TABLES_BY_NAME] = {}
     bus: Annotated[BusSpec, Word] = BusSpec()
     terminal: TerminalSpec | None = None
     real_speed_limit: Positive = 0.1
