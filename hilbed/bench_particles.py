@@ -145,11 +145,11 @@ def measured() -> Iterator[Timed]:
 
 def table(stages: list[Timed]) -> str:
     """Returns the stages as lines of text, with the whole cycle at 900 particles."""
-    lines = [f"{'particles':30}{PAPER:>9}{FEW:>9}{MANY:>9}{'growth':>9}{'all pairs':>11}{'of them':>9}"]
+    lines = [f"{'particles':34}{PAPER:>9}{FEW:>9}{MANY:>9}{'growth':>9}{'all pairs':>11}{'of them':>9}"]
     for timed in stages:
         times = "".join(f"{1e3 * t:9.3f}" for t in timed[1:4])
         pairs = f"{1e3 * timed.brute:11.3f}{timed.paper / timed.brute:9.2f}" if timed.brute else ""
-        lines.append(f"{timed.stage + ', ms':30}{times}{timed.growth:9.0f}{pairs}")
+        lines.append(f"{timed.stage + ', ms':34}{times}{timed.growth:9.0f}{pairs}")
     fixed = sum(timed.paper for timed in stages if timed.brute is None)
     worst = max(timed.paper for timed in stages if timed.brute is not None)
     lines.append(f"predict, update, law and the slowest selection at {PAPER}: {1e3 * (fixed + worst):.2f} ms")
