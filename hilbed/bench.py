@@ -20,7 +20,7 @@ STARTS = 5
 
 
 def bench(scenario: str) -> int:
-    """Runs a scenario with all recorders on, prints its cost, then that of particles; returns the run's status.
+    """Runs a scenario with all recorders on, prints its cost and that of particles; returns the run's status.
 
     floor / total = (cost.physics + cost.render) / wall_time, both from the same run. On two processors or
     more the camera renders and detects in a process of its own, beside the rest.
