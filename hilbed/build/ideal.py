@@ -1,8 +1,10 @@
-"""A bench around an ideal robot: a kinematic plant that is told commands directly, as the papers simulate it."""
+"""A bench around an ideal robot: a kinematic plant that is told commands directly, as in the papers."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
+from math import nan
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from hilbed.build.bench import Bench
 from hilbed.build.known import start_of, surroundings
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.senses import Scene, kinds_of, make_sensors
+from hilbed.build.upsets import schedule_of
 from hilbed.clock import nanos
 from hilbed.cost import Cost
 from hilbed.effects import Effects
@@ -32,11 +35,13 @@ def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: P
     reference = None if scenario.reference is None else scenario.reference.build()
     start, period = start_of(scenario, reference), nanos(scenario.period)
     vehicle = make_vehicle(spec, robot.twist, robot.limited, rng.stream(scenario.seed, "plant"))
+    effects = Effects(())
+    schedule = schedule_of(scenario, (), effects)
     with ExitStack() as closing:
-        scene = Scene(spec.beacons, Effects(()), witness, cost, separate)
+        scene = Scene(spec.beacons, effects, witness, cost, separate)
         sensors = make_sensors(scenario, scene, closing)
         close = closing.pop_all().close
-    plant = KinematicPlant(start, vehicle, sensors)
+    plant = KinematicPlant(start, vehicle, sensors, lambda t: schedule.apply(t, Nowhere()))
     told = _told(start, spec, scenario.seed)
     rig = Rig(
         IdealBase(plant, vehicle),
@@ -52,6 +57,13 @@ def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: P
         rig, told, reference, (), kinds_of(scenario), tuple(spec.beacons),
         boot=plant.start, close=close, pace=pace,
     )  # fmt: skip
+
+
+class Nowhere:
+    """The surroundings of disturbances that only know the time."""
+
+    pose = Pose(nan, nan, nan)
+    wheels: Sequence[tuple[float, float]] = ()
 
 
 def _told(start: Pose, spec: KinematicSpec, seed: int) -> Pose:

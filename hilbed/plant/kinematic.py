@@ -29,13 +29,21 @@ class Vehicle(NamedTuple):
 class KinematicPlant:
     """A pose that moves with the command held; `obey` takes effect from the next `advance`.
 
-    Sensors see it at the moments at which they are due, also within a period.
+    Sensors see it at the moments at which they are due, also within a period, once `disturb` has told them
+    what is wrong with them then.
     """
 
-    def __init__(self, start: Pose, vehicle: Vehicle, sensors: Sequence[Sensor] = ()) -> None:
+    def __init__(
+        self,
+        start: Pose,
+        vehicle: Vehicle,
+        sensors: Sequence[Sensor] = (),
+        disturb: Callable[[Nanos], None] = lambda _: None,
+    ) -> None:
         self._pose = start
         self._vehicle = vehicle
         self._sensors = tuple(sensors)
+        self._disturb = disturb
         self._command = Command(0.0, 0.0)
         self._t: Nanos = 0
 
@@ -45,9 +53,7 @@ class KinematicPlant:
 
     def start(self) -> None:
         """Lets sensors take their first samples, those at t = 0."""
-        for sensor in self._sensors:
-            if sensor.due <= 0:
-                sensor.sample(self.truth())
+        self._sample(0, lambda _: self._pose)
 
     def obey(self, command: Command) -> None:
         """Takes over a command for the coming periods."""
@@ -62,10 +68,15 @@ class KinematicPlant:
         def pose(t: Nanos) -> Pose:
             return advanced(self._pose, twist, seconds(t - start), of.integrator, of.steps)
 
-        for sensor in self._sensors:
-            while sensor.due <= end:
-                sensor.sample(Truth(sensor.due, pose(sensor.due)))
+        self._sample(end, pose)
         self._pose, self._t = pose(end), end
+
+    def _sample(self, end: Nanos, pose: Callable[[Nanos], Pose]) -> None:
+        """Lets sensors that are due up to and including `end` take their samples, in the order of time."""
+        while due := [sensor for sensor in self._sensors if sensor.due <= end]:
+            sensor = min(due, key=lambda sensor: sensor.due)
+            self._disturb(sensor.due)
+            sensor.sample(Truth(sensor.due, pose(sensor.due)))
 
 
 class IdealBase:

@@ -28,6 +28,9 @@ FOOD = {
 }
 """The kinds of readings of which an estimator needs one at least."""
 
+UPSETS = ("camera_loss", "spurious_azimuths", "sensor_loss", "sensor_nan")
+"""Disturbances of sensors, which an ideal robot has as well."""
+
 
 def pans(sensors: Mapping[str, SensorSpec], plant: PlantSpec) -> Problems:
     """A camera's axis follows what the camera can recognise."""
