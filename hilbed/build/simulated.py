@@ -31,15 +31,17 @@ from hilbed.loop import Rig
 from hilbed.pacer import Pacer
 from hilbed.plant.axes import Axis
 from hilbed.plant.bullet import BulletWorld
+from hilbed.plant.bullet_tricycle import TricycleWorld
 from hilbed.plant.drivetrain import reflected_inertia
 from hilbed.plant.simulated import SimulatedPlant
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.plant.supply import Supply
-from hilbed.plant.urdf import Body, diffdrive, moved_inertia
+from hilbed.plant.urdf import moved_inertia
 from hilbed.ports import Witness
 from hilbed.robots import ROBOTS
 from hilbed.robots.limited import Limited
 from hilbed.scenario import files
+from hilbed.scenario.bodies import body_of
 from hilbed.scenario.load import Loaded
 from hilbed.scenario.model import Scenario
 from hilbed.types import Nanos
@@ -77,12 +79,12 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     start, period, tick = start_of(scenario, reference), nanos(scenario.period), nanos(spec.tick)
     nodes = nodes_of(scenario, spec, robot.drives)
 
-    effects = Effects([spec.friction] * len(robot.drives))
+    body = body_of(scenario.robot, files.resolve(scenario.robot.urdf, loaded.folder))
+    effects = Effects([spec.friction] * len(body.treads), len(robot.drives))
     schedule = _schedule(scenario, robot.drives, effects)
     sensors = make_sensors(scenario, Scene(spec.beacons, effects, witness, cost, separate), closing)
-    body = _body(loaded)
     inertia = reflected_inertia(spec.motor, spec.gear)
-    world = BulletWorld(body, spec, start, inertia, cost)
+    world = WORLDS[scenario.robot.kind](body, spec, start, inertia, cost)
     closing.callback(world.close)
     faults = Faults()
     wire = Wire(scenario.bus.bitrate, witness.transfer, faults.note)
@@ -91,7 +93,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     carriage = join(wire, scenario.bus, nodes, pacer, closing)
     elsewhere.check(nodes, carriage, scenario.terminal)
     terminals = elsewhere.terminals_of(nodes, carriage, scenario.terminal, closing)
-    axes = Workshop(spec, moved_inertia(body, inertia), wire, terminals).axes(nodes)
+    moved = dict(zip(robot.drives, moved_inertia(body, inertia), strict=True))
+    axes = Workshop(spec, moved, wire, terminals).axes(nodes)
     schedule.listeners += [faults.update, partial(_power, axes)]
     supply, collect = Supply(spec.supply), None if terminals is None else terminals.collect
     plant = SimulatedPlant(axes, world, supply, schedule, carriage.medium, sensors, tick, cost, collect)
@@ -135,6 +138,4 @@ def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> 
     return Schedule(entries, effects)
 
 
-def _body(loaded: Loaded) -> Body:
-    robot = loaded.scenario.robot
-    return diffdrive(files.resolve(robot.urdf, loaded.folder), robot.wheel_radius, robot.track)
+WORLDS = {"diffdrive": BulletWorld, "tricycle": TricycleWorld}

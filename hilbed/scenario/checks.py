@@ -18,10 +18,11 @@ from hilbed.disturbances import DisturbanceSpec
 from hilbed.disturbances.bus import BusFault
 from hilbed.plant import KinematicSpec, PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.plant.chopper import Switched, periods
-from hilbed.plant.urdf import diffdrive, meshes
+from hilbed.plant.urdf import meshes
 from hilbed.problems import Problem, nearest
 from hilbed.robots import RobotSpec
-from hilbed.scenario import files, sensing
+from hilbed.scenario import files, matches, sensing
+from hilbed.scenario.bodies import body_of
 from hilbed.sensors import SensorSpec
 from hilbed.types import ScenarioError
 
@@ -132,7 +133,7 @@ def _body(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
         with suppress(ScenarioError):
             path = files.resolve(robot.urdf, folder)
             try:
-                diffdrive(path, robot.wheel_radius, robot.track)
+                body_of(robot, path)
                 for mesh in meshes(path, "collision"):
                     files.beside(mesh, robot.urdf, folder)
             except ScenarioError as error:
@@ -180,8 +181,9 @@ def _recorded(
             yield Problem(("disturbances", k), f"disturbances.{k}: nothing can disturb a recorded robot")
     if isinstance(plant, KinematicSpec):
         for k, disturbance in enumerate(disturbances):
-            text = f"disturbances.{k}: {disturbance.kind} cannot befall an ideal robot; plant: bullet can"
-            yield Problem(("disturbances", k), text)
+            if disturbance.kind not in sensing.UPSETS:
+                text = f"disturbances.{k}: {disturbance.kind} cannot befall an ideal robot; plant: bullet can"
+                yield Problem(("disturbances", k), text)
 
 
 def _disturbed(
@@ -250,5 +252,5 @@ def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems
 
 CHECKS: tuple[Callable[..., Problems], ...] = (
     _periods, _ticks, _nodes, _joined, _beacons, _start, _path,
-    _files, _body, _recording, _guidance, _recorded, _disturbed, _bus_faults, _judged, *sensing.CHECKS,
+    _files, _body, _recording, _guidance, _recorded, _disturbed, _bus_faults, _judged, *sensing.CHECKS, *matches.CHECKS,
 )  # fmt: skip
