@@ -13,10 +13,14 @@ from hilbed.can.specs import resolve
 from hilbed.clock import SECOND
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.ports import Reference
+from hilbed.robots import RobotSpec, TricycleSpec
 from hilbed.scenario.model import Scenario
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.mounts import mounts
 from hilbed.types import Nanos, Pose
+
+BEHIND = 0.2
+"""rad; a steering axis that is so far behind its demand is jammed."""
 
 
 def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
@@ -44,8 +48,20 @@ def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> 
     nodes = resolve(scenario.nodes, drives)
     fastest = scenario.real_speed_limit / scenario.robot.wheel_radius
     return tuple(
-        replace(node, max_speed=fastest) if node.kind == "real" else _told(node, spec) for node in nodes
+        replace(node, max_speed=fastest)
+        if node.kind == "real"
+        else _limited(_told(node, spec), scenario.robot)
+        for node in nodes
     )
+
+
+def _limited(node: Node, robot: RobotSpec) -> Node:
+    """Returns a steering axis as it is told at boot how far and how fast it may turn; other drives as is."""
+    if not node.table.positions or not isinstance(robot, TricycleSpec):
+        return node
+    end = robot.max_steering * abs(node.counts_per_radian)
+    ends = {"lowest": -end, "highest": end, "following_window": BEHIND * abs(node.counts_per_radian)}
+    return replace(node, max_speed=robot.max_steering_rate, settings={**ends, **node.settings})
 
 
 def _told(node: Node, spec: SimulatedSpec) -> Node:
