@@ -11,12 +11,11 @@ from hilbed.ports import Controller, Estimator, Reference
 from hilbed.spec import Point
 from hilbed.types import Command, Estimate, Nanos, Pose, Rng
 
-
 ESTIMATOR_STREAM = "estimator"
 
 
 class Surroundings(NamedTuple):
-    """What an estimator is given: beacons (m, map), where it starts, the sensor's mount (m, robot), chance."""
+    """What an estimator is given: beacons (m, map), its start, the sensor's mount (m, robot), chance."""
 
     beacons: Sequence[Point]
     start: Pose
@@ -99,8 +98,8 @@ def _measured(spec: Any, known: Surroundings) -> Estimator:
 
 ESTIMATORS: dict[str, Callable[[Any, Surroundings], Estimator]] = {
     "ekf": _ekf, "odometry": _odometry, "bearing_lyapunov": _bearings, "bearing_kalman": _bearings,
-    "bearing_luenberger": _bearings, "bearing_survey": _survey, "particles": _particles, "attitude": _attitude,
-    "measured": _measured,
+    "bearing_luenberger": _bearings, "bearing_survey": _survey, "particles": _particles,
+    "attitude": _attitude, "measured": _measured,
 }  # fmt: skip
 
 

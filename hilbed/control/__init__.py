@@ -15,9 +15,7 @@ ControllerSpec = (
     LqrSpec | OpenLoopSpec | LyapunovTrackingSpec | PathFollowingSpec | RampsSpec | CloudSpec | FrontPointSpec
 )
 
-ReferenceSpec = (
-    LineSpec | CircleSpec | StadiumSpec | FigureEightSpec | WaypointsSpec | LegsSpec | PointSpec
-)
+ReferenceSpec = LineSpec | CircleSpec | StadiumSpec | FigureEightSpec | WaypointsSpec | LegsSpec | PointSpec
 
 ON_THEIR_OWN = ("path_following", "ramps")
 """Controllers that know themselves where to go: a reference is only there to be compared with."""

@@ -17,8 +17,8 @@ def predicted(
 ) -> tuple[Array, Array]:
     """Returns the belief (3,), (3, 3) after a step of told odometry (m, rad); the one it came from stays.
 
-    x' = x + l cos a, y' = y + l sin a, ψ' = ψ + dψ with a = ψ + dψ/2 + direction and the chord l = ds sin(h)/h,
-    h = dψ/2, linearised in the state (F) and in (ds, dψ) (G): P' = F P Fᵀ + G diag(var ds, var dψ) Gᵀ.
+    x' = x + l cos a, y' = y + l sin a, ψ' = ψ + dψ with a = ψ + h + direction, h = dψ/2, and the arc's chord
+    l = ds sin(h)/h, linearised in the state (F) and in (ds, dψ) (G): P' = F P Fᵀ + G diag(var ds, var dψ) Gᵀ.
     Variances are proportional to the way, so that a step cut in two gains no doubt. Written out by elements,
     which takes a third of the time that products of such small matrices take, and leaves P symmetric to the
     bit.

@@ -252,5 +252,6 @@ def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems
 
 CHECKS: tuple[Callable[..., Problems], ...] = (
     _periods, _ticks, _nodes, _joined, _beacons, _start, _path,
-    _files, _body, _recording, _guidance, _recorded, _disturbed, _bus_faults, _judged, *sensing.CHECKS, *matches.CHECKS,
+    _files, _body, _recording, _guidance, _recorded, _disturbed, _bus_faults, _judged,
+    *sensing.CHECKS, *matches.CHECKS,
 )  # fmt: skip

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from hilbed.plant.kinematic import IdealBase, KinematicPlant, Vehicle
 from hilbed.ports import Controller, Estimator
-from hilbed.types import Array, Command, Estimate, Nanos, Pose, Reading
+from hilbed.types import Array, Command, Estimate, Nanos, Odometry, Pose, Reading
 
 Sensor = Callable[[Nanos, Pose], list[Reading]]
 
@@ -61,7 +61,7 @@ def run(
 class Known:
     """An estimator that is told the truth by the sensor: state feedback."""
 
-    def step(self, t: Nanos, odometry: object, readings: list[Reading]) -> Estimate:  # noqa: ARG002
+    def step(self, t: Nanos, odometry: Odometry | None, readings: Sequence[Reading]) -> Estimate:  # noqa: ARG002
         return Estimate(t, np.array(readings[0].value), np.zeros((3, 3)))
 
 

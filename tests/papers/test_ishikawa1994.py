@@ -110,7 +110,9 @@ def test_figures_3_and_4_equal_an_integration(straight: bool, tolerance: float) 
     between = PHI[1] - PHI[0]
     l = np.sqrt(a**2 + b**2 - 2 * a * b * np.cos(between))  # noqa: E741
     expected = np.column_stack((a * b * np.sin(between) / l, (a**2 - a * b * np.cos(between)) / l, l))
-    np.testing.assert_allclose(np.column_stack((result.mean[:, :2], distances(result))), expected, atol=tolerance)
+    np.testing.assert_allclose(
+        np.column_stack((result.mean[:, :2], distances(result))), expected, atol=tolerance
+    )
 
 
 @pytest.mark.parametrize("speed", [1.0, -1.0])
@@ -173,7 +175,9 @@ def test_figure_5_with_a_cameras_bearings(seed: int) -> None:
 
 def test_a_differential_drive_follows_the_line_too() -> None:
     law = PathFollowing(PathFollowingSpec(speed=-1.0))
-    result = estimated(LuenbergerSpec(), REVERSE._replace(vehicle=Vehicle(tuple, integrator=rk4)), law)
+    result = estimated(
+        LuenbergerSpec(), REVERSE._replace(vehicle=Vehicle(lambda u: (u.v, u.w), integrator=rk4)), law
+    )
     assert abs(result.truth[-1, 1] - 1.5) < 5e-3
 
 

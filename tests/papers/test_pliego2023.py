@@ -22,7 +22,7 @@ PERIOD = 10_000_000
 CIRCLE = CircleSpec(kind="circle", radius=1.0, speed=0.3).build()
 EIGHT = FigureEightSpec(kind="figure_eight", radius=0.8, speed=0.3).build()
 SPEC = FrontPointSpec(ahead=0.1, gain=1.0, max_speed=3.0, max_turn_rate=30.0)
-UNICYCLE = Vehicle(tuple)
+UNICYCLE = Vehicle(lambda command: (command.v, command.w))
 
 
 def position(t: int, pose: Pose) -> list[Reading]:
@@ -68,7 +68,9 @@ def test_with_the_heading_known_the_error_decays_as_told() -> None:
     wanted = [front_point(CIRCLE.at(k * 1_000_000).pose, 0.1) for k in range(4001)]
     errors = [
         hypot(zx - dx, zy - dy)
-        for (dx, dy), (zx, zy) in zip(wanted, (front_point(tuple(p), 0.1) for p in fine.truth.tolist()), strict=True)
+        for (dx, dy), (zx, zy) in zip(
+            wanted, (front_point(tuple(p), 0.1) for p in fine.truth.tolist()), strict=True
+        )
     ]
     np.testing.assert_allclose(errors, errors[0] * np.exp(-t), atol=2e-3)
     assert errors[-1] < errors[0] * exp(-4) + 2e-3
