@@ -67,8 +67,8 @@ def food(estimator: EstimatorSpec, sensors: Mapping[str, SensorSpec], plant: Pla
 
 
 def landmarks(sensors: Mapping[str, SensorSpec], plant: PlantSpec, estimator: EstimatorSpec) -> Problems:
-    """Sensors of landmarks have something to look at."""
-    if isinstance(plant, RecordedSpec) or plant.beacons or estimator.kind not in FOOD:
+    """An estimator that lives on landmarks has some to be seen."""
+    if isinstance(plant, RecordedSpec) or plant.beacons or "azimuth" not in FOOD.get(estimator.kind, ()):
         return
     blind = [name for name, sensor in sensors.items() if not isinstance(sensor, PositionSpec)]
     if blind:
