@@ -163,7 +163,8 @@ class Estimate(NamedTuple):
     """What an estimator believes at its t: mean (3,) x, y, yaw; covariance (3, 3), NaN where it states none.
 
     innovations: those of the step that made it; cloud: (M, 3) particles where the estimator has them;
-    landmark_distance: m, where one is estimated and known by now, else NaN.
+    landmark_distance: m, where one is estimated and known by now, else NaN; front: of a marker ahead of the
+    axle (m, m), where it is measured.
     """
 
     t: Nanos
@@ -172,6 +173,7 @@ class Estimate(NamedTuple):
     innovations: tuple[Innovation, ...] = ()
     cloud: Array | None = None
     landmark_distance: float = nan
+    front: tuple[float, float] | None = None
 
 
 class ReferencePoint(NamedTuple):

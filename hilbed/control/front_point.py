@@ -38,7 +38,7 @@ class FrontPoint:
     """ż = ż_d − k (z − z_d): with the true heading the error decays as exp(−k t), whatever the robot's pose.
 
     z_d (free in the paper) is the front point of a robot on the reference, so that the axle comes to the
-    reference as well. z is the estimate's.
+    reference as well. z is the measured one where a marker shows it, else that of the estimated pose.
     """
 
     def __init__(self, spec: FrontPointSpec, reference: Reference) -> None:
@@ -49,7 +49,7 @@ class FrontPoint:
         """Returns v (m/s) and w (rad/s) for the period from `t`."""
         spec = self._spec
         x, y, yaw = estimate.mean.tolist()
-        zx, zy = front_point((x, y, yaw), spec.ahead)
+        zx, zy = estimate.front or front_point((x, y, yaw), spec.ahead)
         pose, v, w = self._reference.at(t)
         dx, dy = front_point(pose, spec.ahead)
         c, s, aside = cos(pose.yaw), sin(pose.yaw), spec.ahead * w

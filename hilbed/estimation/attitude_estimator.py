@@ -10,7 +10,7 @@ import numpy as np
 from hilbed.angles import wrap
 from hilbed.chords import chord
 from hilbed.clock import nanos
-from hilbed.estimation.attitude import STILL, extended, through
+from hilbed.estimation.attitude import STILL, Motion, extended, through
 from hilbed.estimation.attitude_observers import OBSERVERS
 from hilbed.estimation.attitude_spec import AttitudeSpec
 from hilbed.estimation.dead_reckoning import extrapolation, usable
@@ -20,13 +20,15 @@ from hilbed.estimation.ways import Waiting, Way, split
 from hilbed.types import Estimate, Nanos, Odometry, Pose, Reading
 
 SIZES = {"position": 2}
+FRONT = {"front": 2}
 
 
 class Attitude:
     """Positions as measured, carried by odometry in between; heading from the observer, at exposures.
 
-    Takes "position" readings of the axle's midpoint. `ignored` counts what cannot be used: odometry and
-    readings that are not finite, of another kind, out of order, older than the memory or as far ahead.
+    Takes "position" readings of the axle's midpoint; "front" ones of the same exposure are carried along with
+    the turn for the controller, and tell the observer nothing. `ignored` counts what cannot be used: odometry
+    and readings that are not finite, of another kind, out of order, older than the memory or as far ahead.
     """
 
     def __init__(self, spec: AttitudeSpec, start: Pose) -> None:
@@ -38,6 +40,7 @@ class Attitude:
         self._now = STILL
         self._t: Nanos = 0
         self._waiting = Waiting(self._memory)
+        self._lever: complex | None = None  # from the position to the marker ahead, at the last exposure
         self.ignored = 0
 
     def counts(self) -> dict[str, float]:
@@ -49,13 +52,20 @@ class Attitude:
         self._move(odometry)
         ready, refused = self._waiting.due(readings, self._t)
         self.ignored += refused
-        for reading in ready:
-            self._measure(reading)
+        for reading in sorted(ready, key=lambda reading: (reading.t, reading.kind == "front")):
+            if reading.kind == "front":
+                self._measure_front(reading)
+            else:
+                self._measure(reading)
         length, direction = chord(*extrapolation(t - self._t, odometry))
         ahead = self._now.displacement + rect(length, self._now.turn + direction)
         place = self._position + self._observer.heading * ahead
-        yaw = wrap(phase(self._observer.heading) + self._now.turn + 2.0 * direction)
-        return Estimate(t, np.array((place.real, place.imag, yaw)), NO_COVARIANCE)
+        turn = self._now.turn + 2.0 * direction
+        mean = np.array((place.real, place.imag, wrap(phase(self._observer.heading) + turn)))
+        if self._lever is None:
+            return Estimate(t, mean, NO_COVARIANCE)
+        front = place + self._lever * rect(1.0, turn)
+        return Estimate(t, mean, NO_COVARIANCE, front=(front.real, front.imag))
 
     def _move(self, odometry: Odometry) -> None:
         if not usable(odometry) or odometry.t < self._t:
@@ -73,6 +83,7 @@ class Attitude:
         motion = extended(STILL, way)
         self._position += self._observer.heading * motion.displacement
         self._observer.step(motion._replace(displacement=0j))
+        self._turn_lever(motion)
         self._seen = None
         self._now = through(self._since)
 
@@ -89,5 +100,17 @@ class Attitude:
         if self._seen is None:  # nothing to compare with: only the turn
             motion = motion._replace(displacement=0j)
         self._observer.step(motion._replace(measured=place - self._position))
+        self._turn_lever(motion)
         self._position, self._seen, self._since = place, reading.t, after
         self._now = through(after)
+
+    def _measure_front(self, reading: Reading) -> None:
+        """Takes the marker ahead, which is only of use beside the position of the same exposure."""
+        if readable(reading, FRONT) and reading.t == self._seen:
+            self._lever = complex(*reading.value) - self._position
+        else:
+            self.ignored += 1
+
+    def _turn_lever(self, motion: Motion) -> None:
+        if self._lever is not None:
+            self._lever *= rect(1.0, motion.turn)

@@ -31,6 +31,10 @@ class Measured:
         self._trail = Trail(nanos(spec.memory))
         self.ignored = 0
 
+    def counts(self) -> dict[str, float]:
+        """Returns how much odometry and how many readings could not be used."""
+        return {"ignored": self.ignored}
+
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the pose at `t`, extrapolated beyond the odometry."""
         self._move(odometry)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from hilbed.control import ControllerSpec
 from hilbed.disturbances import DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec, RecordedSpec
@@ -76,6 +77,17 @@ def landmarks(sensors: Mapping[str, SensorSpec], plant: PlantSpec, estimator: Es
         yield Problem(("plant", "beacons"), text)
 
 
+def markers(sensors: Mapping[str, SensorSpec], controller: ControllerSpec | None) -> Problems:
+    """A marker ahead that the controller steers by is where the controller believes it."""
+    if controller is None or controller.kind != "front_point":
+        return
+    for name, sensor in sensors.items():
+        if isinstance(sensor, PositionSpec) and sensor.front not in (None, controller.ahead):
+            told = f"the controller's point is {controller.ahead:g} m ahead"
+            text = f"sensors.{name}.front: the marker is {sensor.front:g} m ahead of the axle, but {told}"
+            yield Problem(("sensors", name, "front"), text)
+
+
 def disturbed(disturbances: list[DisturbanceSpec], sensors: Mapping[str, SensorSpec]) -> Problems:
     """What disturbs a sensor names one that can be disturbed so."""
     for k, disturbance in enumerate(disturbances):
@@ -95,4 +107,4 @@ def disturbed(disturbances: list[DisturbanceSpec], sensors: Mapping[str, SensorS
             yield Problem(("disturbances", k, "sensor"), text)
 
 
-CHECKS = (pans, one_mount, food, landmarks, disturbed)
+CHECKS = (pans, one_mount, food, landmarks, markers, disturbed)

@@ -138,3 +138,39 @@ def test_a_global_estimate_through_the_middle_still_has_a_heading() -> None:
 def test_bad_settings_are_refused(bad: dict[str, object]) -> None:
     with pytest.raises(ValidationError):
         AttitudeSpec.model_validate(bad)
+
+
+def front(t: int, pose: Pose) -> Reading:
+    z = exact(pose, (0.1, 0.0), 1.0)
+    return Reading("front", t, t, (z.x, z.y), (1e-3, 1e-3))
+
+
+@FORMS
+@pytest.mark.parametrize("swapped", [False, True])
+def test_a_marker_ahead_is_carried_by_the_turn_whatever_the_heading_is_believed(
+    form: str, swapped: bool
+) -> None:
+    """Ten a second, 50 ms late, first guess 2.5 rad off; as far as the axle is right, so is the marker."""
+    drive, estimator = Drive(), Attitude(spec(form, 2.5), START)
+    seen: dict[int, list[Reading]] = {}
+    for k in range(300):
+        if k % 10 == 0:
+            pair = [position(drive.t, drive.pose), front(drive.t, drive.pose)]
+            seen[k + 5] = pair[::-1] if swapped else pair
+        estimate = estimator.step(drive.t, drive.odometry(), seen.pop(k, []))
+        if k >= 5:
+            assert estimate.front is not None
+            z = exact(drive.pose, (0.1, 0.0), 1.0)
+            lever = np.array(estimate.front) - estimate.mean[:2]
+            np.testing.assert_allclose(lever, (z.x - drive.pose.x, z.y - drive.pose.y), atol=1e-9)
+        else:
+            assert estimate.front is None
+        drive.move()
+    assert estimator.ignored == 0
+
+
+def test_a_marker_without_its_position_or_without_a_number_is_ignored() -> None:
+    drive, estimator = Drive(), Attitude(spec("so2"), START)
+    broken = front(0, START)._replace(value=(nan, 0.0))
+    estimate = estimator.step(0, drive.odometry(), [front(0, START), broken])
+    assert (estimate.front, estimator.counts()) == (None, {"ignored": 2})
