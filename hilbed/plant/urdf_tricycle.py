@@ -70,7 +70,10 @@ def _stretch(path: Path, root: Element, along: float, across: float) -> None:
     if inertia is None:
         raise ScenarioError(f"{path}: base_link has no <inertial> with mass and inertia")
     if origin is not None:
-        x, y, z = (float(word) for word in origin.get("xyz", "0 0 0").split())
+        try:
+            x, y, z = (float(word) for word in origin.get("xyz", "0 0 0").split())
+        except ValueError:
+            raise ScenarioError(f"{path}: base_link's <inertial> has no place of three numbers") from None
         origin.set("xyz", f"{x * along!r} {y * across!r} {z!r}")
     xx, yy, zz = (number(path, inertia, axis) for axis in ("ixx", "iyy", "izz"))
     lengths = 0.5 * (yy + zz - xx) * along**2

@@ -73,7 +73,7 @@ class Drive:
 
 
 def arc(poses: list[Pose]) -> tuple[float, float]:
-    """Returns way along its heading and turn of a run of poses: their quotient is the radius, with its sign."""
+    """Returns way along its heading and turn of a run of poses: their quotient is the radius."""
     way = turn = 0.0
     for a, b in pairwise(poses):
         middle = a.yaw + 0.5 * wrap(b.yaw - a.yaw)
