@@ -171,12 +171,16 @@ def files(run: Run) -> str:
 
 
 def document(run: Run, body: str) -> str:
-    """Returns the whole page."""
-    title = escape(f"{run.verdict['scenario']}, seed {run.verdict['seed']}")
+    """Returns the whole page of a run."""
+    return whole(f"{run.verdict['scenario']}, seed {run.verdict['seed']}", body)
+
+
+def whole(title: str, body: str) -> str:
+    """Returns a whole page."""
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{title} · hilbed</title><style>{_variables()}{_sheet()}</style></head>\n"
+        f"<title>{escape(title)} · hilbed</title><style>{_variables()}{_sheet()}</style></head>\n"
         f"<body><main>{body}</main></body></html>\n"
     )
 
