@@ -17,7 +17,7 @@ SCANNER = "{kind: range_bearing, rate: 10, range_noise: 0.05, bearing_noise: 0.0
 
 def moment(run: Ran, name: str, times: np.ndarray) -> np.ndarray:
     rows = np.rint(times / 0.01).astype(int)
-    return run.signals[name][rows]
+    return np.asarray(run.signals[name][rows])
 
 
 @pytest.mark.parametrize("scenario", PLANTS)
