@@ -34,7 +34,7 @@ def steps(axes: Sequence[Node], period: Nanos) -> Iterator[Step]:
     for name, pdo in table.pdos.items():
         yield from _pdo(node, name, pdo)
     for axis in axes:
-        yield axis.of("mode"), table.modes[axis.mode]
+        yield axis.of("mode"), table.modes[axis.first_mode]
         yield axis.of(table.target), 0
 
 

@@ -96,6 +96,8 @@ class DriveTable(Spec):
         for word in (*commanded, "statusword", "mode"):
             if word not in self.objects:
                 yield f"objects has no {word}"
+        if self.homes and "homing" not in self.modes:
+            yield "it homes, but modes has no homing"
         if isinstance(self.units.polarity, list) and len(self.units.polarity) != self.axes:
             yield f"units.polarity has {len(self.units.polarity)} signs for {self.axes} axes"
         for name, pdo in self.pdos.items():

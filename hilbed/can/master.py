@@ -69,7 +69,7 @@ class Master:
         for entry, value in configuration.steps(axes, self._period):
             sdo.write(entry.index, entry.sub, entry.type, value)
         for axis in axes:
-            _await_mode(link, sdo, axis)
+            _await_mode(link, sdo, axis, axis.first_mode)
         link.send(nmt.command(nmt.START, node.id))
         if not link.until(lambda: heard.states.get(node.id) == nmt.OPERATIONAL, _for(node, STATE_TIMEOUT)):
             state = nmt.STATE_NAMES.get(heard.states.get(node.id, -1), "silent")
@@ -113,9 +113,9 @@ def _identify(sdo: SdoClient, node: Node) -> None:
             )
 
 
-def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
+def _await_mode(link: Link, sdo: SdoClient, node: Node, mode: str) -> None:
     """Waits until the drive shows the mode that it has been given."""
-    wanted = node.table.modes[node.mode]
+    wanted = node.table.modes[mode]
     if "mode_display" not in node.table.objects:
         return
     entry = node.of("mode_display")
@@ -143,7 +143,6 @@ def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
 def _home(link: Link, sdo: SdoClient, node: Node) -> None:
     """Has the drive find its zero by the method that it has been told, then gives it its own mode back."""
     control, mode = node.of("controlword"), node.of("mode")
-    sdo.write(mode.index, mode.sub, mode.type, node.table.modes["homing"])
     sdo.write(control.index, control.sub, control.type, cia402.HOME)
     deadline = link.t + _for(node, STATE_TIMEOUT)
     while not _statusword(sdo, node) & cia402.HOMED:
@@ -156,7 +155,7 @@ def _home(link: Link, sdo: SdoClient, node: Node) -> None:
     position = sdo.read(here.index, here.sub, here.type)
     sdo.write(target.index, target.sub, target.type, position)
     sdo.write(mode.index, mode.sub, mode.type, node.table.modes[node.mode])
-    _await_mode(link, sdo, node)
+    _await_mode(link, sdo, node, node.mode)
 
 
 def _statusword(sdo: SdoClient, node: Node) -> int:
