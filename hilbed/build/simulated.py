@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from hilbed import rng
 from hilbed.build import elsewhere
 from hilbed.build.axes import Workshop
 from hilbed.build.bench import Bench
@@ -17,6 +16,7 @@ from hilbed.build.hands import Hands
 from hilbed.build.known import boot_of, nodes_of, start_of, surroundings
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.senses import Scene, kinds_of, make_sensors
+from hilbed.build.upsets import schedule_of
 from hilbed.can.base import CanBase
 from hilbed.can.faults import Faults
 from hilbed.can.master import Master
@@ -24,8 +24,6 @@ from hilbed.can.traffic import CONTROLLER
 from hilbed.can.wire import Wire
 from hilbed.clock import nanos
 from hilbed.cost import Cost
-from hilbed.disturbances import DISTURBANCES
-from hilbed.disturbances.schedule import Schedule
 from hilbed.effects import Effects
 from hilbed.loop import Rig
 from hilbed.pacer import Pacer
@@ -43,7 +41,6 @@ from hilbed.robots.limited import Limited
 from hilbed.scenario import files
 from hilbed.scenario.bodies import body_of
 from hilbed.scenario.load import Loaded
-from hilbed.scenario.model import Scenario
 from hilbed.types import Nanos
 
 
@@ -81,7 +78,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
 
     body = body_of(scenario.robot, files.resolve(scenario.robot.urdf, loaded.folder))
     effects = Effects([spec.friction] * len(body.treads), len(robot.drives))
-    schedule = _schedule(scenario, robot.drives, effects)
+    schedule = schedule_of(scenario, robot.drives, effects)
     sensors = make_sensors(scenario, Scene(spec.beacons, effects, witness, cost, separate), closing)
     inertia = reflected_inertia(spec.motor, spec.gear)
     world = WORLDS[scenario.robot.kind](body, spec, start, inertia, cost)
@@ -125,17 +122,6 @@ def _power(axes: Sequence[Axis], t: Nanos, effects: Effects) -> None:
     """Takes the drives' logic its supply or gives it back."""
     for axis in axes:
         axis.power(t, axis.name not in effects.unpowered)
-
-
-def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:
-    entries = []
-    for k, spec in enumerate(scenario.disturbances):
-        drive = getattr(spec, "drive", None)
-        wheel = -1 if drive is None else drives.index(drive)
-        entries.append(
-            (spec, DISTURBANCES[spec.kind](spec, wheel, rng.stream(scenario.seed, f"disturbances.{k}")))
-        )
-    return Schedule(entries, effects)
 
 
 WORLDS = {"diffdrive": BulletWorld, "tricycle": TricycleWorld}
