@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from hilbed.control import OWN_COMMAND
+from hilbed.control.ramps import Ramps, unlimited
 from hilbed.control.steered import Steered
 from hilbed.ports import Controller, Estimator, Reference
 from hilbed.spec import Point
@@ -24,11 +25,15 @@ class Surroundings(NamedTuple):
 
 
 class Guidance(NamedTuple):
-    """What a controller is given: a path, ns of the cycle, the robot's command for v (m/s) and w (rad/s)."""
+    """What a controller is given: a path, ns of the cycle, and its robot.
+
+    command: the robot's own for v (m/s) and w (rad/s); limited: a command as the robot takes it.
+    """
 
     reference: Reference | None
     period: Nanos
     command: Callable[[float, float], Command] = Command
+    limited: Callable[[Command], Command] = unlimited
 
 
 class Idle:
@@ -127,10 +132,8 @@ def _path_following(spec: Any, _: Guidance) -> Controller:
     return PathFollowing(spec)
 
 
-def _ramps(spec: Any, _: Guidance) -> Controller:
-    from hilbed.control.ramps import Ramps
-
-    return Ramps(spec)
+def _ramps(spec: Any, guidance: Guidance) -> Controller:
+    return Ramps(spec, guidance.limited)
 
 
 def _cloud(spec: Any, guidance: Guidance) -> Controller:

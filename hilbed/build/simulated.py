@@ -100,7 +100,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
         base,
         sensors,
         make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
-        make_controller(scenario.controller, Guidance(reference, period, robot.command)),
+        make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
         plant,
         period,
         cost,

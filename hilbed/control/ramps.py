@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal, NamedTuple
 
 from hilbed.clock import seconds
@@ -17,7 +18,7 @@ class RampSpec(Spec):
 
 
 class RampsSpec(Spec):
-    """The robot's own command over time: speed, and steering angle (or yaw rate); the robot limits it.
+    """The robot's own command over time, within its limits: speed, and steering angle (or yaw rate).
 
     The paper prints the ramps' unit as rad/s; they are in rad.
     """
@@ -27,12 +28,18 @@ class RampsSpec(Spec):
     steering: RampSpec = RampSpec(rate=0.5)
 
 
+def unlimited(command: Command) -> Command:
+    """Returns the command as it is."""
+    return command
+
+
 class Ramps(NamedTuple):
-    """Both inputs at each period's start, whatever the pose."""
+    """Both inputs at each period's start, as the robot takes them, whatever the pose."""
 
     spec: RampsSpec
+    limited: Callable[[Command], Command] = unlimited
 
     def step(self, t: Nanos, estimate: Estimate) -> Command:  # noqa: ARG002
         """Returns the command for the period from `t`."""
         v, γ, s = self.spec.speed, self.spec.steering, seconds(t)
-        return Command(v.start + v.rate * s, γ.start + γ.rate * s)
+        return self.limited(Command(v.start + v.rate * s, γ.start + γ.rate * s))

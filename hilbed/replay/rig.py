@@ -80,7 +80,7 @@ def rig_of(recording: Recording) -> tuple[Rig, Pose, Reference | None]:
         CanBase(robot, RecordedBus(recording.frames), nodes, scenario.bus),
         sensors,
         make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
-        make_controller(scenario.controller, Guidance(reference, period, robot.command)),
+        make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
         NoPlant(),
         period,
         Cost(),
