@@ -19,6 +19,9 @@ from hilbed.scene import BeaconSpec
 from hilbed.sensors.mounts import mounts
 from hilbed.types import Nanos, Pose
 
+BRAKING = 2.5
+"""m/s²; a tricycle whose wheels brake harder slides on: not all of them have a drive, or carry much."""
+
 BEHIND = 0.2
 """rad; a steering axis that is so far behind its demand is jammed."""
 
@@ -56,9 +59,13 @@ def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> 
 
 
 def _limited(node: Node, robot: RobotSpec) -> Node:
-    """Returns a steering axis as it is told at boot how far and how fast it may turn; other drives as is."""
-    if not node.table.positions or not isinstance(robot, TricycleSpec):
+    """Returns a tricycle's drive as it is told at boot how far and how fast it may turn, how hard brake."""
+    if not isinstance(robot, TricycleSpec):
         return node
+    if not node.table.positions:
+        rate = BRAKING / robot.wheel_radius * abs(node.counts_per_radian)
+        braking = {"quick_stop": rate} if "quick_stop" in node.table.settings else {}
+        return replace(node, settings={**braking, **node.settings})
     end = robot.max_steering * abs(node.counts_per_radian)
     ends = {"lowest": -end, "highest": end, "following_window": BEHIND * abs(node.counts_per_radian)}
     return replace(node, max_speed=robot.max_steering_rate, settings={**ends, **node.settings})
