@@ -22,12 +22,13 @@ from hilbed.estimation.importance import importance, squared_distances
 from hilbed.estimation.particle_filter import ParticleFilter
 from hilbed.estimation.particle_spec import ParticleFilterSpec
 from hilbed.estimation.resampling import multinomial
-from hilbed.plant.unicycle import InputNoise, disturbed, rk4
+from hilbed.plant.kinematics import TwistNoise, advanced, rk4
 from hilbed.rng import stream
 from hilbed.types import Array, Command, Odometry, Pose, Reading
 
 T = 0.05
 START, GOAL = Pose(4.0, 0.0, pi), Pose(1.0, 3.0, -pi / 2)
+NOISE = TwistNoise(0.005, 0.1745)
 STD = (0.1, 0.1, pi / 180)
 RADII = CloudSpec().radii
 MOMENTS = {"first": 0, "middle": 50, "goal": 600}
@@ -73,7 +74,7 @@ def told_run(cycles: int) -> list[Told]:
         estimate = particles.step(t, odometry, readings)
         told.append(Told(odometry, readings, Pose(*estimate.mean.tolist())))
         u = control.step(t, estimate)
-        truth = rk4(truth, disturbed(u, InputNoise(), plant), T)
+        truth = advanced(truth, NOISE.disturbed(u, plant), T, rk4, 4)
     return told
 
 

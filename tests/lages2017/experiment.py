@@ -12,7 +12,7 @@ from hilbed.control.cloud_spec import CloudSpec
 from hilbed.control.point import PointSpec
 from hilbed.estimation.particle_filter import ParticleFilter
 from hilbed.estimation.particle_spec import ParticleFilterSpec
-from hilbed.plant.unicycle import InputNoise, disturbed, rk4
+from hilbed.plant.kinematics import TwistNoise, advanced, rk4
 from hilbed.rng import stream
 from hilbed.types import Command, Estimate, Odometry, Pose, Reading
 
@@ -21,6 +21,7 @@ T = 0.05
 CYCLES = 1400
 GOAL = Pose(1.0, 3.0, -pi / 2)
 START = Pose(4.0, 0.0, pi)
+NOISE = TwistNoise(0.005, 0.1745)
 GPS_STD = (0.1, 0.1, pi / 180)
 STARTS = [
     Pose(4, 2, 2.5), Pose(4, 4, 3), Pose(2, 6, 1.9), Pose(0, 6, 2.9),
@@ -57,7 +58,7 @@ def experiment(
         estimate = estimator.step(t, odometry, readings)
         command = controller.step(t, estimate)
         yield Moment(truth, estimate, command)
-        truth = rk4(truth, disturbed(command, InputNoise(), plant), T)
+        truth = advanced(truth, NOISE.disturbed(command, plant), T, rk4, 4)
         k += 1
 
 
