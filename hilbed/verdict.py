@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import inf, isfinite
 from typing import Any, NamedTuple, TextIO
 
@@ -156,4 +156,9 @@ def _counts(part: Mapping[str, Mapping[str, float | None]]) -> str:
     return "\n".join(told)
 
 
-_PARTS = {"counts": _counts, "nodes": _nodes, "realtime": _realtime, "adapter": _adapter}
+_PARTS: dict[str, Callable[[Any], str]] = {
+    "counts": _counts,
+    "nodes": _nodes,
+    "realtime": _realtime,
+    "adapter": _adapter,
+}
