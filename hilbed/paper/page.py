@@ -26,6 +26,7 @@ def figures() -> dict[str, Figure]:
         "tracking": pose_figures.tracking,
         "commands": state_figures.commands,
         "landmark": state_figures.landmark,
+        "observability": state_figures.observability,
         "speeds": drive_figures.speeds,
         "efforts": drive_figures.efforts,
         "nis": sensor_figures.nis,

@@ -57,6 +57,29 @@ def landmark(run: Run) -> str | None:
     return style.svg(figure, "distance of the landmarks")
 
 
+def observability(run: Run) -> str | None:
+    """Returns how well bearings tell the state along the true path; None where no landmark is looked for.
+
+    The determinant of the four-state rank condition without steering: it passes through zero where the
+    robot's axis passes through a landmark.
+    """
+    signals = run.signals
+    if "landmark_distance" not in signals:
+        return None
+    from hilbed.estimation.observability import full_determinant
+
+    true = np.hypot(*(signals["beacons"][1] - signals["beacons"][0]))
+    path = np.column_stack((signals["truth"], np.full(len(signals["t"]), true)))
+    figure, (axes,) = style.sheet(1, 2.2)
+    t, thin = style.thinned(signals["t"], full_determinant(path))
+    axes.plot(t, thin, color=style.STAND_IN["truth"])
+    axes.axhline(0.0, color=style.STAND_IN["bad"], linewidth=0.8)
+    axes.set_yscale("symlog", linthresh=1e-3)
+    axes.set_ylabel("determinant  [1/m⁵]")
+    style.on_time([axes], signals["t"], run.spans)
+    return style.svg(figure, "observability along the path")
+
+
 def _unjoined(yaw: style.Column) -> style.Column:
     """Returns yaw with a gap where it wraps."""
     jumps = np.flatnonzero(np.abs(np.diff(yaw)) > np.pi) + 1
