@@ -39,7 +39,8 @@ def controllers(kind: str, reference: str, acceleration: float | None = None) ->
     if "speed" in block:
         block["acceleration"] = acceleration
     path = REFERENCES[reference].model_validate(block).build()
-    return make_controller(CONTROLLERS[kind](), Guidance(path, 10_000_000)), path
+    fast_enough = {"max_speed": FASTEST[0]} if "max_speed" in CONTROLLERS[kind].model_fields else {}
+    return make_controller(CONTROLLERS[kind](**fast_enough), Guidance(path, 10_000_000)), path
 
 
 @pytest.mark.parametrize("reference", REFERENCES)
