@@ -16,7 +16,8 @@ FOLDER = Path(__file__).parent / "papers"
 NAMES = sorted(file.stem for file in FOLDER.glob("*.yaml"))
 
 Drawing = Literal[
-    "path", "states", "errors", "tracking", "commands", "landmark", "observability", "speeds", "efforts", "nis"
+    "path", "states", "errors", "tracking", "commands", "landmark", "observability",
+    "speeds", "efforts", "nis",
 ]  # fmt: skip
 Triple = Listed[tuple[float, float, float]]
 
