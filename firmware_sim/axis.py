@@ -9,6 +9,8 @@ from firmware_sim.cia402 import OPTIONS, QUICK_STOPS, TRANSITIONS, Command, Ramp
 from firmware_sim.entry import key
 from firmware_sim.errors import ErrorCode, Errors
 from firmware_sim.modes import MODES, Plan, stopping
+from firmware_sim.objects.profile import HOMING, POSITION_MODES
+from firmware_sim.positioner import Positioner
 from firmware_sim.ramp import approach
 from firmware_sim.settings import read_loop, read_motor, read_settings
 from firmware_sim.speedmeter import Speedmeter
@@ -42,12 +44,14 @@ class Axis:
         self.stop: Stop | None = None
         self._word = self._low = self._stopped = 0
         self.meter = Speedmeter(1, 0.0)
+        self.positioner = Positioner(values)
         self._tune()
 
     def reset(self) -> None:
         """Power-on: chopper open, no errors, waiting for the master."""
         self._word = 0
         self.halted = False
+        self.positioner = Positioner(self.values)
         self.errors.clear(*ErrorCode)
         self._tune()
         self._enter(State.SWITCH_ON_DISABLED)
@@ -68,6 +72,13 @@ class Axis:
             self._low = 0
         ref = self.speed_ref
         target, rise, fall = self.plan
+        if self.positioner.active:
+            target = self.positioner.step(counts)
+            if self.positioner.lost:
+                self.fail(ErrorCode.FOLLOWING)
+                if not self.bridge_enabled:
+                    return 0
+                target, rise, fall = self.plan
         if ref != target:
             ref = self.speed_ref = approach(ref, target, rise, fall)
         low, high = self._window(speed, supply * _QUARTER)
@@ -121,10 +132,14 @@ class Axis:
         word = self.values[_CONTROL]
         if word != self._word or self.state is not _ENABLED or self.stop is not None:
             command = cia402.decode(self._word, word)
+            begins = word & ~self._word & cia402.BEGIN
             self._word = word
             self.halted = bool(word & cia402.HALT)
             if command is not None:
                 self._obey(command)
+            if begins and self.state is _ENABLED and self.values[_MODE] == HOMING:
+                self.positioner.set_home(self.values, self.settings, self.counts)
+                self.event = True
         self._replan()
 
     def _obey(self, command: Command) -> None:
@@ -206,6 +221,7 @@ class Axis:
         self.settings = read_settings(self.values)
         self._trip = self.settings.trip
         self._least = self.settings.least
+        self.positioner.configure(self.values, self.settings)
 
     def _replan(self) -> None:
         values, settings = self.values, self.settings
@@ -221,6 +237,11 @@ class Axis:
         if self.limited:
             target = most if target > 0.0 else -most
         self.plan = self._planned(target)
+        going = self.state is _ENABLED and self.stop is None and not self.halted
+        if mode in POSITION_MODES and going:
+            self.limited = self.positioner.aim(values, settings, self.counts)
+        else:
+            self.positioner.active = False
 
     def _planned(self, target: float) -> Plan:
         if self.stop is not None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from typing import TypeAlias
 
 from firmware_sim.cia402 import Ramp
-from firmware_sim.objects.profile import CYCLIC_VELOCITY, NO_MODE, PROFILE_VELOCITY
+from firmware_sim.objects.profile import CYCLIC_POSITION, CYCLIC_VELOCITY, HOMING, NO_MODE, PROFILE_VELOCITY
 from firmware_sim.settings import Settings
 
 Plan: TypeAlias = tuple[float, float, float]
@@ -34,8 +35,15 @@ def _cyclic_velocity(settings: Settings, target: float) -> Plan:
     return target, settings.slew, settings.slew
 
 
+def _position(_settings: Settings, _target: float) -> Plan:
+    """The position loop says in every tick where the speed goes."""
+    return 0.0, inf, inf
+
+
 MODES: dict[int, Callable[[Settings, float], Plan]] = {
     NO_MODE: _none,
     PROFILE_VELOCITY: _profile_velocity,
+    HOMING: _none,
+    CYCLIC_POSITION: _position,
     CYCLIC_VELOCITY: _cyclic_velocity,
 }

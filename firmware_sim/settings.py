@@ -10,6 +10,7 @@ from firmware_sim.entry import key
 from firmware_sim.error_rate import TICK
 from firmware_sim.loops import Gains, RelayGains, SpeedLoop, make_loop
 from firmware_sim.motor_model import MotorModel
+from firmware_sim.position import PositionLoop
 
 Values = dict[int, Any]
 
@@ -20,6 +21,8 @@ class Settings(NamedTuple):
     """unit: rad/s of one count/s; polarity: ±1, of the position; max_speed, threshold, window: rad/s;
     rise, slew and falls: rad/s a tick; trip: mA; least: quarters of a volt; torque_scale, current_scale:
     per mille of the rated value a mA. unit and both scales are negative where velocities are reversed (607E).
+    lowest, highest: where a position target may be, following: how far behind the axis may be, counts;
+    interpolation: ticks.
     """
 
     unit: float
@@ -34,6 +37,10 @@ class Settings(NamedTuple):
     least: float
     torque_scale: float
     current_scale: float
+    lowest: float
+    highest: float
+    following: float
+    interpolation: float
 
 
 def read_settings(values: Values) -> Settings:
@@ -58,11 +65,21 @@ def read_settings(values: Values) -> Settings:
         least=values[key(0x2013, 3)] * 4.0,
         torque_scale=direction * 1000.0 * values[key(0x2012, 2)] / values[key(0x6076)],
         current_scale=direction * 1000.0 / values[key(0x6075)],
+        lowest=values[key(0x607D, 1)],
+        highest=values[key(0x607D, 2)],
+        following=values[key(0x6065)],
+        interpolation=max(values[key(0x60C2, 1)] * 10.0 ** values[key(0x60C2, 2)] / TICK, 1.0),
     )
 
 
 def read_motor(values: Values) -> MotorModel:
     return MotorModel(values[key(0x2012, 1)], values[key(0x2012, 2)], values[key(0x2013, 1)])
+
+
+def read_position(values: Values) -> PositionLoop:
+    """Returns a position loop at zero."""
+    unit = 2.0 * math.pi / values[key(0x2001)]
+    return PositionLoop(values[key(0x2014)], unit, values[key(0x607F)] * unit)
 
 
 def read_loop(values: Values) -> SpeedLoop:

@@ -1,4 +1,4 @@
-"""`hilbed bench`: the floor that physics and renderer set, the total, and where the rest goes."""
+"""`hilbed bench`: the floor that physics and renderer set, the total, where the rest goes; particles."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any
 
+from hilbed import bench_particles
 from hilbed.record.folder import RunFolder
 from hilbed.runner import perform, processors
 from hilbed.scenario.load import load
@@ -19,7 +20,7 @@ STARTS = 5
 
 
 def bench(scenario: str) -> int:
-    """Runs a scenario with all recorders on, prints its cost and returns the run's status.
+    """Runs a scenario with all recorders on, prints its cost and that of particles; returns the run's status.
 
     floor / total = (cost.physics + cost.render) / wall_time, both from the same run. On two processors or
     more the camera renders and detects in a process of its own, beside the rest.
@@ -36,6 +37,7 @@ def bench(scenario: str) -> int:
     print(_table(loaded.name, verdict, beside))
     print(f"peak memory: {memory:.0f} MB, of the camera's process {child:.0f} MB")
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
+    print(bench_particles.table(list(bench_particles.measured())))
     return outcome.status
 
 

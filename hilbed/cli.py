@@ -62,7 +62,7 @@ def _status(options: Options) -> int:
             return BUS
         except HilbedError as error:
             print(error, file=sys.stderr)
-            return BROKEN if options.command in (_run, _sweep, _bench) else REFUSED
+            return BROKEN if options.command in (_run, _sweep, _paper, _bench) else REFUSED
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -100,6 +100,13 @@ def _parser() -> argparse.ArgumentParser:
     sweep.add_argument("--seeds", required=True, metavar="A..B", help="seeds from A to B, both included")
     sweep.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
     sweep.add_argument("--json", action="store_true", help="print the table as JSON")
+
+    paper = _command(commands, "paper", _paper, "run all experiments of a paper and write its page")
+    paper.add_argument("paper", metavar="NAME", help="such as lages2017")
+    paper.add_argument("--out", type=Path, metavar="DIR", help="folder of page and runs (runs/paper-NAME)")
+    paper.add_argument("--force", action="store_true", help="replace an existing page and its runs")
+    paper.add_argument("--ideal", action="store_true", help="leave the twins on the bench out")
+    paper.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
 
     _command(commands, "list", _list, "list the bundled scenarios")
     check = _command(commands, "check", _check, "validate a scenario and print every error with its line")
@@ -160,6 +167,12 @@ def _sweep(options: Options) -> int:
     from hilbed.sweep import sweep
 
     return sweep(options.scenario, options.seeds, options.settings, options.jobs, options.json)
+
+
+def _paper(options: Options) -> int:
+    from hilbed.paper.command import paper
+
+    return paper(options.paper, options.out, options.jobs, options.ideal, options.force)
 
 
 def _list(_: Options) -> int:

@@ -34,40 +34,45 @@ class Babble(NamedTuple):
 class Effects:
     """The knobs of one tick; wheels in the order of the robot's drives.
 
-    load_torque: N m at each wheel, positive against forward rotation; friction: coefficient under each
-    wheel; radius: factor on each wheel's rolling radius; push: force (N, N) in the map on the body's
-    centre of mass and torque (N m) about z; supply_drop: V off the supply's open-circuit voltage;
-    spurious: mean number of false azimuths a frame; blind: the camera delivers nothing; frames, babble: what
-    happens on the bus; bus_off, unpowered: names of nodes whose CAN controller, or whose logic, is off.
+    load_torque: N m at each drive, positive against forward rotation; friction: coefficient under each
+    wheel, those without a drive last; radius: factor on each drive's rolling radius; push: force (N, N) in
+    the map on the body's centre of mass and torque (N m) about z; supply_drop: V off the supply's
+    open-circuit voltage;
+    spurious: mean number of false azimuths a frame; blind: the camera delivers nothing; lost, broken: names
+    of sensors that deliver nothing, or NaN; frames, babble: what happens on the bus; bus_off, unpowered:
+    names of nodes whose CAN controller, or whose logic, is off.
     """
 
     __slots__ = (
-        "_friction", "babble", "blind", "bus_off", "frames", "friction", "load_torque", "push", "radius",
-        "spurious", "supply_drop", "unpowered",
+        "_drives", "_friction", "babble", "blind", "broken", "bus_off", "frames", "friction", "load_torque",
+        "lost", "push", "radius", "spurious", "supply_drop", "unpowered",
     )  # fmt: skip
 
-    def __init__(self, friction: Sequence[float]) -> None:
+    def __init__(self, friction: Sequence[float], drives: int | None = None) -> None:
+        """friction: under each wheel without disturbances; drives: how many, if not as many as wheels."""
         self._friction = list(friction)
+        self._drives = len(self._friction) if drives is None else drives
         self.load_torque: list[float] = []
         self.friction: list[float] = []
         self.radius: list[float] = []
         self.frames: list[FrameFault] = []
         self.babble: list[Babble] = []
+        self.lost: set[str] = set()
+        self.broken: set[str] = set()
         self.bus_off: set[str] = set()
         self.unpowered: set[str] = set()
         self.reset()
 
     def reset(self) -> None:
         """Takes every knob back to what it is without disturbances."""
-        wheels = len(self._friction)
-        self.load_torque[:] = [0.0] * wheels
+        self.load_torque[:] = [0.0] * self._drives
         self.friction[:] = self._friction
-        self.radius[:] = [1.0] * wheels
+        self.radius[:] = [1.0] * self._drives
         self.push: tuple[float, float, float] = (0.0, 0.0, 0.0)
         self.supply_drop = 0.0
         self.spurious = 0.0
         self.blind = False
-        for knob in (self.frames, self.babble, self.bus_off, self.unpowered):
+        for knob in (self.frames, self.babble, self.lost, self.broken, self.bus_off, self.unpowered):
             knob.clear()
 
 

@@ -9,7 +9,7 @@ from math import isfinite
 from hilbed.clock import seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.ports import Base, Controller, Estimator, Plant, Sensor
-from hilbed.types import Cycle, Diverged, Nanos
+from hilbed.types import Cycle, Diverged, Estimate, Nanos
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,15 @@ class Rig:
     cost: Cost
 
 
+def sound(estimate: Estimate) -> bool:
+    """Tells whether mean and covariance are numbers; a covariance that is NaN throughout is none at all."""
+    doubt = estimate.covariance.tolist()
+    mean = sum(estimate.mean.tolist())
+    return isfinite(mean + sum(map(sum, doubt))) or (
+        isfinite(mean) and all(element != element for row in doubt for element in row)
+    )
+
+
 def think(rig: Rig, t: Nanos) -> Cycle:
     """Reads the robot and its sensors at `t` and decides what to do, without doing it.
 
@@ -37,9 +46,8 @@ def think(rig: Rig, t: Nanos) -> Cycle:
     readings = [reading for sensor in rig.sensors for reading in sensor.read(t)]
     start = perf_counter()
     estimate = rig.estimator.step(t, odometry, readings)
-    mean = estimate.mean.tolist()
-    if not isfinite(sum(mean) + sum(map(sum, estimate.covariance.tolist()))):
-        raise Diverged(f"t = {seconds(t):.3f} s: the estimate is not finite ({mean})")
+    if not sound(estimate):
+        raise Diverged(f"t = {seconds(t):.3f} s: the estimate is not finite ({estimate.mean.tolist()})")
     thought = perf_counter()
     command = rig.controller.step(t, estimate)
     rig.cost.controller += perf_counter() - thought

@@ -45,11 +45,29 @@ class Robot(Protocol):
     def drives(self) -> tuple[str, ...]: ...
 
     def wheel_speeds(self, command: Command) -> tuple[float, ...]:
-        """Converts a command to rad/s at each drive's wheel, in the order of `drives`."""
+        """Converts a command to a target of each drive, in the order of `drives`.
+
+        rad/s of a wheel; rad of a steering axis.
+        """
         ...
 
     def travel(self, turned: Sequence[float]) -> tuple[float, float]:
-        """Converts angles (or rates) of the wheels to distance and turn (or v and w) of the robot."""
+        """Converts angles (or rates) of the wheels to distance and turn (or v and w) of the robot.
+
+        One number a drive; that of a steering axis is its angle (rad), not its change.
+        """
+        ...
+
+    def limited(self, command: Command) -> Command:
+        """Returns the command within the robot's limits."""
+        ...
+
+    def twist(self, command: Command) -> tuple[float, float]:
+        """Returns speed (m/s) of the axle's midpoint and yaw rate (rad/s) that a command gives."""
+        ...
+
+    def command(self, v: float, w: float) -> Command:
+        """Returns the command for them, within the limits: the inverse of `twist`."""
         ...
 
 

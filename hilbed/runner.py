@@ -9,6 +9,7 @@ import os
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,6 +29,7 @@ from hilbed.record.row import Sink
 from hilbed.scenario.load import Loaded, resolved
 from hilbed.scenario.model import Scenario
 from hilbed.scenario.own_files import pack
+from hilbed.tally import counts_of
 from hilbed.types import BusError, Cycle, Diverged, HilbedError, Interrupted, Nanos
 from hilbed.versions import versions
 
@@ -151,10 +153,16 @@ def _pacer(scenario: Scenario, cost: Cost) -> Pacer | None:
 
 
 def _parts(bench: Bench, pacer: Pacer | None) -> dict[str, Any]:
-    """Returns what verdict.json says of a run in real time, or on a bus that others are on."""
-    if pacer is None:
-        return bench.account()
-    return {"realtime": pacer.ledger.summary(pacer.period, bench.late()), **bench.account()}
+    """Returns what verdict.json says of counters, of a run in real time, of a bus that others are on."""
+    counted = {"estimator": counts_of(bench.rig.estimator), "controller": counts_of(bench.rig.controller)}
+    parts = {"counts": {name: _numbers(counts) for name, counts in counted.items()}, **bench.account()}
+    if pacer is not None:
+        parts["realtime"] = pacer.ledger.summary(pacer.period, bench.late())
+    return parts
+
+
+def _numbers(counts: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: value if isfinite(value) else None for name, value in counts.items()}
 
 
 def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:

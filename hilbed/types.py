@@ -7,6 +7,7 @@ nanoseconds since the start of the run.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import nan
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 if TYPE_CHECKING:  # numpy takes a third of the time of `hilbed check`, which does not need it
@@ -48,7 +49,10 @@ class Pose(NamedTuple):
 
 
 class Command(NamedTuple):
-    """What a controller asks for: speed v (m/s) of the axle's midpoint and yaw rate w (rad/s)."""
+    """What a robot is asked for: speed v (m/s) and yaw rate w (rad/s) of the axle's midpoint.
+
+    A tricycle takes the speed of what is driven and, in place of w, the angle (rad) of its steering axis.
+    """
 
     v: float
     w: float
@@ -93,12 +97,15 @@ class Transfer(NamedTuple):
 class DriveSignals(NamedTuple):
     """One drive as the controller sees it: what it asked for and what came back over the bus.
 
-    speed_ref, speed_measured: rad/s at the wheel; current_measured: A; NaN until the first PDO.
+    speed_ref, speed_measured: rad/s at the wheel; current_measured: A; NaN until the first PDO. angle_ref,
+    angle_measured: rad, of a steering axis, whose speed_ref is its drive's own affair.
     """
 
     speed_ref: float
     speed_measured: float
     current_measured: float
+    angle_ref: float = nan
+    angle_measured: float = nan
 
 
 class Odometry(NamedTuple):
@@ -120,7 +127,8 @@ class Odometry(NamedTuple):
 class Reading(NamedTuple):
     """One measurement of the surroundings, without any truth in it.
 
-    kind: "azimuth" (rad, robot's frame, from the sensor's optical centre), "range" (m), "position" (m, m);
+    kind: "azimuth" (rad, robot's frame, from the sensor's optical centre), "range" (m), "position" (m, m),
+    "pose" (m, m, rad), "front" (m, m: of a marker ahead of the axle);
     t: exposure; delivered: when the controller gets it; value and std: one number a component;
     beacon: index in the scenario's list of beacons, None where the identity is unknown.
     """
@@ -156,9 +164,11 @@ class Innovation(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """What an estimator believes at its t: mean (3,) x, y, yaw; covariance (3, 3).
+    """What an estimator believes at its t: mean (3,) x, y, yaw; covariance (3, 3), NaN where it states none.
 
-    innovations: those of the step that made it; cloud: (M, 3) particles where the estimator has them.
+    innovations: those of the step that made it; cloud: (M, 3) particles where the estimator has them;
+    landmark_distance: m, where one is estimated and known by now, else NaN; front: of a marker ahead of the
+    axle (m, m), where it is measured.
     """
 
     t: Nanos
@@ -166,6 +176,8 @@ class Estimate(NamedTuple):
     covariance: Array
     innovations: tuple[Innovation, ...] = ()
     cloud: Array | None = None
+    landmark_distance: float = nan
+    front: tuple[float, float] | None = None
 
 
 class ReferencePoint(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import inf, isfinite
 from typing import Any, NamedTuple, TextIO
 
@@ -146,4 +146,19 @@ def _nodes(part: Mapping[str, str]) -> str:
     return "drives: " + ", ".join(f"{name} {kind}" for name, kind in part.items())
 
 
-_PARTS = {"nodes": _nodes, "realtime": _realtime, "adapter": _adapter}
+def _counts(part: Mapping[str, Mapping[str, float | None]]) -> str:
+    """Tells what was counted, where it was anything at all."""
+    told = [
+        f"{name}: " + ", ".join(f"{key} {value:.4g}" for key, value in counts.items() if value)
+        for name, counts in part.items()
+        if any(counts.values())
+    ]
+    return "\n".join(told)
+
+
+_PARTS: dict[str, Callable[[Any], str]] = {
+    "counts": _counts,
+    "nodes": _nodes,
+    "realtime": _realtime,
+    "adapter": _adapter,
+}

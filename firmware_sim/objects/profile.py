@@ -9,8 +9,10 @@ from __future__ import annotations
 from firmware_sim.datatypes import I8, I16, I32, U8, U16, U32
 from firmware_sim.entry import Entry, Object, record, var
 
-NO_MODE, PROFILE_VELOCITY, CYCLIC_VELOCITY = 0, 3, 9
-MODES = (NO_MODE, PROFILE_VELOCITY, CYCLIC_VELOCITY)
+NO_MODE, PROFILE_POSITION, PROFILE_VELOCITY, HOMING, CYCLIC_POSITION, CYCLIC_VELOCITY = 0, 1, 3, 6, 8, 9
+MODES = (NO_MODE, PROFILE_VELOCITY, HOMING, CYCLIC_POSITION, CYCLIC_VELOCITY)
+HERE = 37  # homing method: the position now is the home offset
+POSITION_MODES = frozenset((CYCLIC_POSITION,))
 
 _states: tuple[Object, ...] = (
     var(0x6007, "Abort connection option", I16, "rw", 3, choices=(0, 1, 2, 3)),
@@ -24,7 +26,7 @@ _states: tuple[Object, ...] = (
     var(0x605E, "Fault reaction option", I16, "rw", 2, choices=(0, 1, 2, 3)),
     var(0x6060, "Mode of operation", I8, "rw", NO_MODE, choices=MODES, mappable=True),
     var(0x6061, "Mode of operation display", I8, "ro", NO_MODE, mappable=True),
-    var(0x6502, "Supported modes", U32, "const", 1 << PROFILE_VELOCITY - 1 | 1 << CYCLIC_VELOCITY - 1),
+    var(0x6502, "Supported modes", U32, "const", sum(1 << mode - 1 for mode in MODES if mode)),
 )
 
 _velocity: tuple[Object, ...] = (
@@ -49,18 +51,22 @@ _motor: tuple[Object, ...] = (
     var(0x60FD, "Digital inputs", U32, "ro", mappable=True),
 )
 
-# Kept for a master that writes them; they act in position and torque modes, which 6502 does not claim.
+# Target torque and its offset are kept for a master that writes them; 6502 claims no torque mode.
 _position: tuple[Object, ...] = (
+    var(0x6062, "Position demand in counts", I32, "ro", mappable=True),
     var(0x6064, "Position actual in counts", I32, "ro", mappable=True),
     var(0x6065, "Following error window in counts", U32, "rw", 0xFFFFFFFF),
     var(0x6071, "Target torque in 1/1000 of rated", I16, "rw", mappable=True),
     var(0x607A, "Target position in counts", I32, "rw", mappable=True),
+    var(0x607C, "Home offset in counts", I32, "rw"),
     record(
         0x607D,
         "Position limits in counts",
         Entry(1, "Lowest", I32, "rw", -(2**31)),
         Entry(2, "Highest", I32, "rw", 2**31 - 1),
     ),
+    var(0x60F4, "Following error actual in counts", I32, "ro", mappable=True),
+    var(0x6098, "Homing method", I8, "rw", HERE, choices=(HERE,)),
     var(0x60B2, "Torque offset in 1/1000 of rated", I16, "rw", mappable=True),
     record(
         0x60C2,

@@ -20,8 +20,11 @@ def build(
 
     separate: cameras render in processes of their own, to the same hash; pacer: of a run in real time.
     """
+    from hilbed.build.ideal import ideal
     from hilbed.build.recorded import recorded
     from hilbed.build.simulated import simulated
 
-    builders: dict[str, Callable[..., Bench]] = {"bullet": simulated, "recorded": recorded}
+    builders: dict[str, Callable[..., Bench]] = {
+        "bullet": simulated, "recorded": recorded, "kinematic": ideal,
+    }  # fmt: skip
     return builders[loaded.scenario.plant.kind](loaded, witness, cost, separate, pacer)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from hilbed.build.standin import StandIn, plate
@@ -20,10 +20,10 @@ from hilbed.plant.specs import SimulatedSpec
 
 @dataclass(frozen=True)
 class Workshop:
-    """What axes are made from; inertia: kg m² that each wheel has to move; terminals: of ecu nodes."""
+    """What axes are made from; inertia: kg m² that a drive has to move, by name; terminals: of ecu nodes."""
 
     spec: SimulatedSpec
-    inertia: float
+    inertia: Mapping[str, float]
     wire: Wire
     terminals: Terminals | None
     stand_ins: dict[int, tuple[StandIn, Port]] = field(default_factory=dict)
@@ -38,9 +38,9 @@ class Workshop:
         return [self.axis(node) for node in nodes]
 
 
-def _train(shop: Workshop) -> DriveTrain:
+def _train(shop: Workshop, node: Node) -> DriveTrain:
     spec = shop.spec
-    return DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick, shop.inertia)
+    return DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick, shop.inertia[node.name])
 
 
 def _encoder(shop: Workshop) -> Encoder:
@@ -49,7 +49,7 @@ def _encoder(shop: Workshop) -> Encoder:
 
 def _simulated(shop: Workshop, node: Node) -> Axis:
     """The bench's own firmware where the table is its own, else a stand-in that speaks as the table says."""
-    train, encoder = _train(shop), _encoder(shop)
+    train, encoder = _train(shop, node), _encoder(shop)
     if node.table.identity == load_table(OWN).identity:
         return SimulatedAxis(node.name, own_firmware(node.id), train, encoder, shop.wire.attach)
     made = shop.stand_ins.get(node.id)
@@ -65,7 +65,7 @@ def _simulated(shop: Workshop, node: Node) -> Axis:
 
 def _ecu(shop: Workshop, node: Node) -> Axis:
     assert shop.terminals is not None
-    return EcuAxis(node.name, _train(shop), _encoder(shop), shop.terminals.by_node[node.id])
+    return EcuAxis(node.name, _train(shop, node), _encoder(shop), shop.terminals.by_node[node.id])
 
 
 def _real(shop: Workshop, node: Node) -> Axis:

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from hilbed import rng
 from hilbed.build.bench import BOOT
-from hilbed.build.minds import Surroundings
+from hilbed.build.minds import ESTIMATOR_STREAM, Surroundings
 from hilbed.can.node import Node
 from hilbed.can.specs import resolve
 from hilbed.clock import SECOND
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.ports import Reference
+from hilbed.robots import RobotSpec, TricycleSpec
 from hilbed.scenario.model import Scenario
+from hilbed.scene import BeaconSpec
+from hilbed.sensors.mounts import mounts
 from hilbed.types import Nanos, Pose
+
+BRAKING = 2.5
+"""m/s²; a tricycle whose wheels brake harder slides on: not all of them have a drive, or carry much."""
+
+BEHIND = 0.2
+"""rad; a steering axis that is so far behind its demand is jammed."""
 
 
 def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
@@ -29,10 +39,11 @@ def boot_of(scenario: Scenario) -> Nanos:
     return BOOT if scenario.realtime is None or not away else scenario.realtime.boot * SECOND
 
 
-def surroundings(scenario: Scenario, spec: SimulatedSpec, start: Pose) -> Surroundings:
+def surroundings(scenario: Scenario, beacons: Sequence[BeaconSpec], start: Pose) -> Surroundings:
     """Returns what an estimator knows from the start."""
-    mounts = [sensor.mount[:2] for sensor in scenario.sensors.values()]
-    return Surroundings([beacon.at for beacon in spec.beacons], start, mounts[0] if mounts else (0.0, 0.0))
+    mount = next(iter(mounts(scenario.sensors).values()), (0.0, 0.0))
+    chance = rng.stream(scenario.seed, ESTIMATOR_STREAM)
+    return Surroundings([beacon.at for beacon in beacons], start, mount, chance)
 
 
 def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> tuple[Node, ...]:
@@ -40,8 +51,24 @@ def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> 
     nodes = resolve(scenario.nodes, drives)
     fastest = scenario.real_speed_limit / scenario.robot.wheel_radius
     return tuple(
-        replace(node, max_speed=fastest) if node.kind == "real" else _told(node, spec) for node in nodes
+        replace(node, max_speed=fastest)
+        if node.kind == "real"
+        else _limited(_told(node, spec), scenario.robot)
+        for node in nodes
     )
+
+
+def _limited(node: Node, robot: RobotSpec) -> Node:
+    """Returns a tricycle's drive as it is told at boot how far and how fast it may turn, how hard brake."""
+    if not isinstance(robot, TricycleSpec):
+        return node
+    if not node.table.positions:
+        rate = BRAKING / robot.wheel_radius * abs(node.counts_per_radian)
+        braking = {"quick_stop": rate} if "quick_stop" in node.table.settings else {}
+        return replace(node, settings={**braking, **node.settings})
+    end = robot.max_steering * abs(node.counts_per_radian)
+    ends = {"lowest": -end, "highest": end, "following_window": BEHIND * abs(node.counts_per_radian)}
+    return replace(node, max_speed=robot.max_steering_rate, settings={**ends, **node.settings})
 
 
 def _told(node: Node, spec: SimulatedSpec) -> Node:

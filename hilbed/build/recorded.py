@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from hilbed import rng
 from hilbed.build.bench import Bench
-from hilbed.build.minds import Surroundings, make_controller, make_estimator
+from hilbed.build.minds import ESTIMATOR_STREAM, Guidance, Surroundings, make_controller, make_estimator
 from hilbed.clock import nanos
 from hilbed.cost import Cost
 from hilbed.loop import Rig, at_once
@@ -29,8 +30,8 @@ def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool, pacer: Pacer
     rig = Rig(
         RecordedBase(robot),
         sensors,
-        make_estimator(scenario.estimator, Surroundings(robot.beacons, robot.start, robot.mount)),
-        make_controller(scenario.controller, reference, period),
+        make_estimator(scenario.estimator, _known(robot, scenario.seed)),
+        make_controller(scenario.controller, Guidance(reference, period)),
         RecordedPlant(robot),
         period,
         cost,
@@ -38,3 +39,7 @@ def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool, pacer: Pacer
     beacons = tuple(BeaconSpec(at=at) for at in robot.beacons)
     pace = at_once if pacer is None else pacer.due
     return Bench(rig, robot.start, reference, (), dict.fromkeys(spec.kinds(), 1), beacons, pace=pace)
+
+
+def _known(robot: Recorded, seed: int) -> Surroundings:
+    return Surroundings(robot.beacons, robot.start, robot.mount, rng.stream(seed, ESTIMATOR_STREAM))

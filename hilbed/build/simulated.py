@@ -8,14 +8,15 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from hilbed import rng
 from hilbed.build import elsewhere
 from hilbed.build.axes import Workshop
 from hilbed.build.bench import Bench
 from hilbed.build.carriage import join
 from hilbed.build.hands import Hands
 from hilbed.build.known import boot_of, nodes_of, start_of, surroundings
-from hilbed.build.minds import make_controller, make_estimator
+from hilbed.build.minds import Guidance, make_controller, make_estimator
+from hilbed.build.senses import Scene, kinds_of, make_sensors
+from hilbed.build.upsets import schedule_of
 from hilbed.can.base import CanBase
 from hilbed.can.faults import Faults
 from hilbed.can.master import Master
@@ -23,26 +24,23 @@ from hilbed.can.traffic import CONTROLLER
 from hilbed.can.wire import Wire
 from hilbed.clock import nanos
 from hilbed.cost import Cost
-from hilbed.disturbances import DISTURBANCES
-from hilbed.disturbances.schedule import Schedule
 from hilbed.effects import Effects
 from hilbed.loop import Rig
 from hilbed.pacer import Pacer
 from hilbed.plant.axes import Axis
 from hilbed.plant.bullet import BulletWorld
+from hilbed.plant.bullet_tricycle import TricycleWorld
 from hilbed.plant.drivetrain import reflected_inertia
 from hilbed.plant.simulated import SimulatedPlant
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.plant.supply import Supply
-from hilbed.plant.urdf import Body, diffdrive, moved_inertia
+from hilbed.plant.urdf import moved_inertia
 from hilbed.ports import Witness
 from hilbed.robots import ROBOTS
 from hilbed.robots.limited import Limited
 from hilbed.scenario import files
+from hilbed.scenario.bodies import body_of
 from hilbed.scenario.load import Loaded
-from hilbed.scenario.model import Scenario
-from hilbed.sensors.camera import Camera, open_eye
-from hilbed.sensors.eye import Eye
 from hilbed.types import Nanos
 
 
@@ -78,15 +76,12 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     start, period, tick = start_of(scenario, reference), nanos(scenario.period), nanos(spec.tick)
     nodes = nodes_of(scenario, spec, robot.drives)
 
-    effects = Effects([spec.friction] * len(robot.drives))
-    schedule = _schedule(scenario, robot.drives, effects)
-    eyes = [open_eye(sensor, spec.beacons, cost, separate) for sensor in scenario.sensors.values()]
-    sensors = _sensors(scenario, eyes, effects, witness)
-    for sensor in sensors:
-        closing.callback(sensor.close)
-    body = _body(loaded)
+    body = body_of(scenario.robot, files.resolve(scenario.robot.urdf, loaded.folder))
+    effects = Effects([spec.friction] * len(body.treads), len(robot.drives))
+    schedule = schedule_of(scenario, robot.drives, effects)
+    sensors = make_sensors(scenario, Scene(spec.beacons, effects, witness, cost, separate), closing)
     inertia = reflected_inertia(spec.motor, spec.gear)
-    world = BulletWorld(body, spec, start, inertia, cost)
+    world = WORLDS[scenario.robot.kind](body, spec, start, inertia, cost)
     closing.callback(world.close)
     faults = Faults()
     wire = Wire(scenario.bus.bitrate, witness.transfer, faults.note)
@@ -95,7 +90,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     carriage = join(wire, scenario.bus, nodes, pacer, closing)
     elsewhere.check(nodes, carriage, scenario.terminal)
     terminals = elsewhere.terminals_of(nodes, carriage, scenario.terminal, closing)
-    axes = Workshop(spec, moved_inertia(body, inertia), wire, terminals).axes(nodes)
+    moved = dict(zip(robot.drives, moved_inertia(body, inertia), strict=True))
+    axes = Workshop(spec, moved, wire, terminals).axes(nodes)
     schedule.listeners += [faults.update, partial(_power, axes)]
     supply, collect = Supply(spec.supply), None if terminals is None else terminals.collect
     plant = SimulatedPlant(axes, world, supply, schedule, carriage.medium, sensors, tick, cost, collect)
@@ -103,8 +99,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     rig = Rig(
         base,
         sensors,
-        make_estimator(scenario.estimator, surroundings(scenario, spec, start)),
-        make_controller(scenario.controller, reference, period),
+        make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
+        make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
         plant,
         period,
         cost,
@@ -114,9 +110,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     wake = elsewhere.wakers(nodes, carriage, terminals)
     master, power_on = Master(nodes, port, period), boot_of(scenario)
     hands = Hands(master, base, plant, carriage, flush, tick, period, wake, faults, power_on)
-    kinds = {"azimuth": 1} if sensors else {}
     return Bench(
-        rig, start, reference, robot.drives, kinds, tuple(spec.beacons), tick,
+        rig, start, reference, robot.drives, kinds_of(scenario), tuple(spec.beacons), tick,
         hands.boot, hands.stop, plant.ticks, hands.events, closing.close, nodes,
         carriage.due, lambda: elsewhere.late(base.late, terminals),
         lambda: {"nodes": {node.name: node.kind for node in nodes}, **carriage.account()}, power_on,
@@ -129,26 +124,4 @@ def _power(axes: Sequence[Axis], t: Nanos, effects: Effects) -> None:
         axis.power(t, axis.name not in effects.unpowered)
 
 
-def _schedule(scenario: Scenario, drives: tuple[str, ...], effects: Effects) -> Schedule:
-    entries = []
-    for k, spec in enumerate(scenario.disturbances):
-        drive = getattr(spec, "drive", None)
-        wheel = -1 if drive is None else drives.index(drive)
-        entries.append(
-            (spec, DISTURBANCES[spec.kind](spec, wheel, rng.stream(scenario.seed, f"disturbances.{k}")))
-        )
-    return Schedule(entries, effects)
-
-
-def _sensors(
-    scenario: Scenario, eyes: Sequence[Eye], effects: Effects, witness: Witness
-) -> tuple[Camera, ...]:
-    return tuple(
-        Camera(spec, eye, rng.stream(scenario.seed, f"sensors.{name}"), effects, witness)
-        for (name, spec), eye in zip(scenario.sensors.items(), eyes, strict=True)
-    )
-
-
-def _body(loaded: Loaded) -> Body:
-    robot = loaded.scenario.robot
-    return diffdrive(files.resolve(robot.urdf, loaded.folder), robot.wheel_radius, robot.track)
+WORLDS = {"diffdrive": BulletWorld, "tricycle": TricycleWorld}

@@ -8,7 +8,6 @@ from hilbed.build.known import nodes_of
 from hilbed.can.node import Node
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.record.folder import SCENARIO
-from hilbed.robots import ROBOTS
 from hilbed.scenario.load import load
 from hilbed.types import ScenarioError
 
@@ -20,4 +19,4 @@ def nodes_in(name: str) -> tuple[Node, ...]:
     scenario = load(str(inside) if inside.is_file() else name).scenario
     if not isinstance(scenario.plant, SimulatedSpec):
         raise ScenarioError(f"{name}: a plant of kind {scenario.plant.kind} has no drives on a bus")
-    return nodes_of(scenario, scenario.plant, ROBOTS[scenario.robot.kind].drives)
+    return nodes_of(scenario, scenario.plant, scenario.robot.drives)

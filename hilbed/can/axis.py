@@ -72,7 +72,7 @@ class Axis:
         self._velocity = node.velocity_per_radian
         self._actual = node.actual_per_radian
         self._amperes = node.amperes
-        self._limits = limits(table.objects["target_velocity"].parts(node.axis)[0][1])
+        self._limits = limits(table.objects[table.target].parts(node.axis)[0][1])
 
     def routes(self) -> dict[int, Route]:
         """Returns where each of the drive's TPDOs goes, by identifier."""
@@ -87,12 +87,18 @@ class Axis:
 
     def ask(self, speed: float) -> None:
         """Makes a speed (rad/s at the wheel) the target, limited to what the object holds."""
-        low, high = self._limits
-        raw = round(speed * self._velocity)
-        if not low <= raw <= high:
-            raw = low if raw < low else high
-        self.raw = raw
+        self.raw = self._held(speed * self._velocity)
         self.speed_ref = speed
+
+    def _held(self, number: float) -> int:
+        """Returns the nearest number that the target's object can hold."""
+        low, high = self._limits
+        raw = round(number)
+        return raw if low <= raw <= high else low if raw < low else high
+
+    def rest(self) -> None:
+        """Makes standstill the target."""
+        self.ask(0.0)
 
     def turned(self) -> float:
         """Returns the wheel's turn (rad) since the last complete set, across the wrap of 32 bits."""
@@ -100,6 +106,10 @@ class Axis:
         before = position if self.position is None else self.position
         self.position = position
         return ((position - before + 0x80000000 & 0xFFFFFFFF) - 0x80000000) * self.radians_per_count
+
+    def rate(self) -> float:
+        """Returns the wheel's measured speed (rad/s)."""
+        return float(self.values[VELOCITY] / self._actual)
 
     def signals(self) -> DriveSignals:
         """Returns the drive as the controller sees it now."""

@@ -16,6 +16,7 @@ from hilbed.can.axis import ENABLED_BITS, STATE_BITS, STATUS, Axis, Route
 from hilbed.can.cob import CONTROLLER_ID, SYNC_FRAME
 from hilbed.can.ears import Ears
 from hilbed.can.node import Node
+from hilbed.can.position_axis import axis_of
 from hilbed.can.specs import BusSpec
 from hilbed.can.station import stations
 from hilbed.clock import MILLISECOND, nanos, seconds
@@ -37,7 +38,7 @@ class CanBase:
         self.silences = 0
         self._robot = robot
         self._bus = bus
-        self._axes = tuple(map(Axis, nodes))
+        self._axes = tuple(map(axis_of, nodes))
         self._real = tuple(axis for axis in self._axes if axis.node.kind == "real")
         self._stopping = False
         self.ears = Ears(self._axes)
@@ -101,8 +102,8 @@ class CanBase:
                 axis.heard = axis.alive = t
         self._sync, self._sync_before = t, self._sync
         self._syncs += 1
-        for axis, speed in zip(self._axes, self._robot.wheel_speeds(command), strict=True):
-            axis.ask(speed)
+        for axis, target in zip(self._axes, self._robot.wheel_speeds(command), strict=True):
+            axis.ask(target)
         for station in self._stations:
             for frame in station.orders():
                 send(t, frame)
@@ -159,7 +160,7 @@ class CanBase:
             for axis in axes:
                 axis.late += axis.fresh != self._syncs
         signals = {axis.node.name: axis.signals() for axis in axes}
-        rates = robot.travel([signal.speed_measured for signal in signals.values()])
+        rates = robot.travel([axis.rate() for axis in axes])
         if isfinite(rates[0]):  # all drives have spoken
             self._rates = rates
         v, w = self._rates

@@ -34,8 +34,8 @@ def steps(axes: Sequence[Node], period: Nanos) -> Iterator[Step]:
     for name, pdo in table.pdos.items():
         yield from _pdo(node, name, pdo)
     for axis in axes:
-        yield axis.of("mode"), table.modes[axis.mode]
-        yield axis.of("target_velocity"), 0
+        yield axis.of("mode"), table.modes[axis.first_mode]
+        yield axis.of(table.target), 0
 
 
 def _settings(axis: Node) -> Iterator[Step]:

@@ -86,6 +86,7 @@ def scaling(node: Node, word: str) -> tuple[float, str]:
     """Returns SI units a number in an object, and the unit; 1 and none for an object without."""
     scales = {
         "target_velocity": (1 / node.velocity_per_radian, "rad/s"),
+        "target_position": (1 / node.counts_per_radian, "rad"),
         "velocity_actual": (1 / node.actual_per_radian, "rad/s"),
         "position_actual": (1 / node.counts_per_radian, "rad"),
         "current_actual": (node.amperes, "A"),

@@ -27,7 +27,10 @@ Milliseconds = Annotated[int, Field(ge=1, le=0xFFFF)]
 OWN = "hilbed402"
 """The table of the bench's own drive."""
 
-COMMANDED = ("controlword", "target_velocity")
+POSITION = "hilbed402-csp"
+"""The table of the bench's own drive as one that holds a position."""
+
+TARGETS = ("target_velocity", "target_position")
 MEASURED = ("statusword", "velocity_actual", "position_actual")
 
 
@@ -51,7 +54,8 @@ class DriveTable(Spec):
     """A type of drive: identity, units, objects, PDOs, modes, what is written at boot, where settings go.
 
     axes: motors in one node; remappable: whether the mapping of its PDOs may be written; interpolates:
-    whether it has 60C2; writes: as they stand; period: objects that follow from the control period (s);
+    whether it has 60C2; homes: whether it is homed before it is used, by the method that is written to it;
+    writes: as they stand; period: objects that follow from the control period (s);
     settings: objects that follow from words and numbers of the scenario.
     """
 
@@ -63,11 +67,22 @@ class DriveTable(Spec):
     pdos: dict[PdoName, Pdo]
     remappable: bool = True
     interpolates: bool = False
+    homes: bool = False
     modes: dict[str, int]
     heartbeat: Heartbeat = Heartbeat()
     writes: list[Write] = Field(default_factory=list)
     period: list[Setting] = Field(default_factory=list)
     settings: dict[str, Setting] = Field(default_factory=dict)
+
+    @property
+    def positions(self) -> bool:
+        """Whether an RPDO maps a target position: the drive holds an angle, not a speed."""
+        return any("target_position" in self.pdos[name].map for name in self.receives)
+
+    @property
+    def target(self) -> str:
+        """The word of the object that is commanded besides the controlword."""
+        return TARGETS[self.positions]
 
     @model_validator(mode="after")
     def _complete(self) -> DriveTable:
@@ -77,9 +92,12 @@ class DriveTable(Spec):
         return self
 
     def _lacking(self) -> Iterator[str]:
-        for word in (*COMMANDED, "statusword", "mode"):
+        commanded = ("controlword", self.target)
+        for word in (*commanded, "statusword", "mode"):
             if word not in self.objects:
                 yield f"objects has no {word}"
+        if self.homes and "homing" not in self.modes:
+            yield "it homes, but modes has no homing"
         if isinstance(self.units.polarity, list) and len(self.units.polarity) != self.axes:
             yield f"units.polarity has {len(self.units.polarity)} signs for {self.axes} axes"
         for name, pdo in self.pdos.items():
@@ -93,13 +111,14 @@ class DriveTable(Spec):
                 yield f"{name} is longer than 8 bytes"
         told = {(value.word, value.axis) for name in self.receives for value in self.values(name)}
         sent = {(value.word, value.axis) for name in self.sends for value in self.values(name)}
-        for kind, words, mapped in (("RPDO", COMMANDED, told), ("TPDO", MEASURED, sent)):
+        commanded = ("controlword", self.target)
+        for kind, words, mapped in (("RPDO", commanded, told), ("TPDO", MEASURED, sent)):
             for word, axis in product(words, range(1, self.axes + 1)):
                 if not mapped & {(word, 0), (word, axis)}:
                     yield f"no {kind} maps {word}" + (f" of axis {axis}" if self.axes > 1 else "")
-        others = sorted({word for word, _ in told} - {*COMMANDED})
+        others = sorted({word for word, _ in told} - {*commanded})
         if others:
-            yield f"an RPDO maps {others[0]}; the bench commands {' and '.join(COMMANDED)} only"
+            yield f"an RPDO maps {others[0]}; the bench commands {' and '.join(commanded)} only"
 
     @property
     def receives(self) -> list[str]:

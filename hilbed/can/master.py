@@ -69,13 +69,15 @@ class Master:
         for entry, value in configuration.steps(axes, self._period):
             sdo.write(entry.index, entry.sub, entry.type, value)
         for axis in axes:
-            _await_mode(link, sdo, axis)
+            _await_mode(link, sdo, axis, axis.first_mode)
         link.send(nmt.command(nmt.START, node.id))
         if not link.until(lambda: heard.states.get(node.id) == nmt.OPERATIONAL, _for(node, STATE_TIMEOUT)):
             state = nmt.STATE_NAMES.get(heard.states.get(node.id, -1), "silent")
             raise BusError(f"{node}: told to start, but its heartbeat (1017) says {state}")
         for axis in axes:
             _enable(link, sdo, axis)
+            if axis.table.homes:
+                _home(link, sdo, axis)
         twins.check(node, sdo.asked - before)
 
 
@@ -111,9 +113,9 @@ def _identify(sdo: SdoClient, node: Node) -> None:
             )
 
 
-def _await_mode(link: Link, sdo: SdoClient, node: Node) -> None:
+def _await_mode(link: Link, sdo: SdoClient, node: Node, mode: str) -> None:
     """Waits until the drive shows the mode that it has been given."""
-    wanted = node.table.modes[node.mode]
+    wanted = node.table.modes[mode]
     if "mode_display" not in node.table.objects:
         return
     entry = node.of("mode_display")
@@ -136,6 +138,24 @@ def _enable(link: Link, sdo: SdoClient, node: Node) -> None:
             sdo.write(control.index, control.sub, control.type, word)
         link.step()
     _check_enabled(sdo, node)
+
+
+def _home(link: Link, sdo: SdoClient, node: Node) -> None:
+    """Has the drive find its zero by the method that it has been told, then gives it its own mode back."""
+    control, mode = node.of("controlword"), node.of("mode")
+    sdo.write(control.index, control.sub, control.type, cia402.HOME)
+    deadline = link.t + _for(node, STATE_TIMEOUT)
+    while not _statusword(sdo, node) & cia402.HOMED:
+        if link.t >= deadline:
+            raise BusError(f"{node}: told to home (bit 4 of 6040), but does not say that it has")
+        link.step()
+    sdo.write(control.index, control.sub, control.type, cia402.ENABLE_OPERATION)
+    target = node.of(node.table.target)
+    here = node.of("position_actual")
+    position = sdo.read(here.index, here.sub, here.type)
+    sdo.write(target.index, target.sub, target.type, position)
+    sdo.write(mode.index, mode.sub, mode.type, node.table.modes[node.mode])
+    _await_mode(link, sdo, node, node.mode)
 
 
 def _statusword(sdo: SdoClient, node: Node) -> int:

@@ -32,6 +32,11 @@ class Node:
     max_speed: float | None = None
 
     @property
+    def first_mode(self) -> str:
+        """The mode in which it is enabled: one that must be homed does not move before."""
+        return "homing" if self.table.homes else self.mode
+
+    @property
     def counts_per_turn(self) -> float:
         """Encoder counts a turn of the shaft that carries it."""
         return float(self.settings.get("counts_per_turn", self.table.units.counts_per_turn))

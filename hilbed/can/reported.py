@@ -30,7 +30,7 @@ class Reported:
         self._routes = self._axis.routes()
         self._target = node.table.pdos["rpdo1"].cob_id + node.id
         codec = node.table.codec("rpdo1")
-        self._unpack, self._place = codec.unpack, codec.names.index("target_velocity")
+        self._unpack, self._place = codec.unpack, codec.names.index(node.table.target)
         self._scale = node.velocity_per_radian
         attach(f"{node.name} as reported", self._hear).accept({*self._routes, self._target})
 

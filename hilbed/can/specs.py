@@ -7,13 +7,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from hilbed.can.drive_table import OWN, load_table
+from hilbed.can.drive_table import OWN, POSITION, load_table
 from hilbed.can.node import Kind, Node
 from hilbed.spec import Finite, NonNegative, Positive, Spec
 from hilbed.types import ScenarioError
 
 BIT_RATES = (10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 800_000, 1_000_000)
-DEFAULT_IDS = {"left": 1, "right": 2, "traction": 1, "steering": 2}
+DEFAULT_TABLES = {"steering": POSITION}
+"""Of drives that hold a position; all others are of the type OWN."""
 WIRE = "hilbed"
 """The wire's own name as an interface of python-can."""
 
@@ -60,8 +61,9 @@ class NodeSpec(Spec):
 
     kind: simulated (here), ecu (its firmware is a process on the bus, motor and shaft are here) or real
     (drive and motor are elsewhere, the simulated wheel follows the reported speed); id: 1 to 126 (by default
-    left 1, right 2); axis: which one of a node that has several; table: of the drive's type; loop: of the
-    speed, null where the table has no such setting; mode: csv (targets act at once) or pv (the drive ramps);
+    its place among the robot's drives, from 1); axis: which one of a node that has several; table: of the
+    drive's type; loop: of the speed, null where the table has no such setting; mode: csv (targets act at
+    once), pv (the drive ramps) or csp (it follows a position);
     counts_per_turn: of the encoder, at the wheel; current_limit: A; slew: rad/s² at the wheel, 0 for none;
     gains: by the names of the table's settings, such as kp, ki, slope.
     """
@@ -71,7 +73,7 @@ class NodeSpec(Spec):
     axis: Annotated[int, Field(ge=1, le=8)] = 1
     table: str = "hilbed402"
     loop: Literal["variable_structure", "pi", "relay"] | None = "variable_structure"
-    mode: Literal["csv", "pv"] = "csv"
+    mode: Literal["csv", "pv", "csp"] = "csv"
     counts_per_turn: Annotated[int, Field(ge=4, le=2**24)] | None = None
     current_limit: Positive | None = None
     slew: NonNegative | None = None
@@ -151,6 +153,24 @@ def _clash(one: Node, other: Node) -> str:
     return ""
 
 
+def with_table(name: str, block: Any) -> Any:
+    """Returns a drive's block, or the word that is short for it, with the table that its name asks for."""
+    given = {"kind": block} if isinstance(block, str) else block
+    if not isinstance(given, dict) or name not in DEFAULT_TABLES:
+        return block
+    return {"table": DEFAULT_TABLES[name], **given}
+
+
+def _unsuited(node: Node) -> list[str]:
+    """Returns why a drive cannot do what its name says, if so."""
+    if node.table.positions != (node.name in DEFAULT_TABLES):
+        what, needed = ("a position", "a speed") if node.table.positions else ("a speed", "a position")
+        return [f"nodes: {node.name} is told {needed}, a drive of the type {node.table.name} {what}"]
+    if node.table.positions and node.kind == "real":
+        return [f"nodes: {node.name} is real, which only drives of wheels can be so far"]
+    return []
+
+
 def resolve(specs: Mapping[str, NodeSpec], drives: Iterable[str]) -> tuple[Node, ...]:
     """Returns the nodes of a robot's drives in their order; ScenarioError with everything that is wrong.
 
@@ -161,10 +181,11 @@ def resolve(specs: Mapping[str, NodeSpec], drives: Iterable[str]) -> tuple[Node,
                 for name in specs if name not in names]  # fmt: skip
     nodes: list[Node] = []
     for place, name in enumerate(names, start=1):
-        spec = specs.get(name, NodeSpec())
-        number = spec.id or DEFAULT_IDS.get(name, place)
+        spec = specs.get(name) or NodeSpec.model_validate(with_table(name, {}))
+        number = spec.id or place
         table = load_table(spec.table)
         node = Node(name, number, table, spec.mode, spec.settings(), spec.axis, spec.kind)
+        problems += _unsuited(node)
         problems += [_clash(other, node) for other in nodes if other.id == number and _clash(other, node)]
         nodes.append(node)
     if problems:

@@ -46,7 +46,7 @@ class Station:
         entry = node.table.objects["controlword"].of(node.axis)
         yield download_frame(node.id, entry.index, entry.sub, QUICK_STOP.to_bytes(2, "little"))
         for axis in self.axes:
-            axis.ask(0.0)
+            axis.rest()
         yield from self.orders()
 
 

@@ -162,6 +162,3 @@ def rounded(points: Sequence[Point], radius: float) -> list[Arc]:
         if i < len(turns) and turns[i]:
             arcs.append(Arc(radius * abs(turns[i]), (1 if turns[i] > 0 else -1) / radius))
     return [arc for arc in arcs if arc.length > 0]
-
-
-ReferenceSpec = LineSpec | CircleSpec | StadiumSpec | FigureEightSpec | WaypointsSpec

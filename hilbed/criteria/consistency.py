@@ -66,6 +66,16 @@ def range_std(signals: Signals) -> float:
     return spread(residuals(signals, "range"))
 
 
+def position_count(signals: Signals) -> float:
+    """Number of measured positions, NaN ones included."""
+    return float(len(position_errors(signals)))
+
+
+def position_rms(signals: Signals) -> float:
+    """Distance between measured and true position, root mean square."""
+    return rms(position_errors(signals))
+
+
 def nees(signals: Signals, size: int) -> Column:
     """Returns eᵀ P⁻¹ e (N,) over the first `size` components of the pose; NaN where P is singular.
 
@@ -89,6 +99,13 @@ def residuals(signals: Signals, kind: str) -> Column:
     real = signals[f"{kind}/beacon"] >= 0
     difference = (signals[f"{kind}/measured"] - signals[f"{kind}/true"])[real]
     return wrapped(difference) if kind == "azimuth" else difference
+
+
+def position_errors(signals: Signals) -> Column:
+    """Returns the distance (K,) in m between measured and true position, of either kind of reading."""
+    kind = "position" if "position/t" in signals else "pose"
+    x, y = (signals[f"{kind}/measured"] - signals[f"{kind}/true"])[:, :2].T
+    return np.asarray(np.hypot(x, y))
 
 
 def mean(values: Column) -> float:

@@ -52,6 +52,10 @@ _RUN_UNITS = {
         "reference_distance_max": "m",
         "reference_distance_final": "m",
         "reference_yaw_rms": "rad",
+        "reference_yaw_max": "rad",
+        "reference_yaw_final": "rad",
+        "turning_radius": "m",
+        "landmark_distance_error_max": "m",
     },
     "consistency": {
         "nees_mean": "",
@@ -65,6 +69,8 @@ _RUN_UNITS = {
         "azimuth_rms_mdeg": "mdeg",
         "range_bias": "m",
         "range_std": "m",
+        "position_count": "",
+        "position_rms": "m",
     },
     "bus": {
         "bus_load": "",

@@ -75,6 +75,32 @@ def reference_yaw_rms(signals: Signals) -> float:
     return rms(turned(signals, "reference"))
 
 
+def reference_yaw_max(signals: Signals) -> float:
+    """Difference in yaw between truth and reference, largest."""
+    return largest(np.abs(turned(signals, "reference")))
+
+
+def reference_yaw_final(signals: Signals) -> float:
+    """Difference in yaw between truth and reference, at the end."""
+    return last(np.abs(turned(signals, "reference")))
+
+
+def turning_radius(signals: Signals) -> float:
+    """Length of the way over its turn, each cycle's way taken for an arc."""
+    truth = signals["truth"]
+    turn = wrapped(np.diff(truth[:, 2]))
+    chords = np.hypot(*np.diff(truth[:, :2], axis=0).T)
+    total = float(np.abs(turn).sum())
+    return float((chords / np.sinc(turn / (2 * np.pi))).sum()) / total if total else inf
+
+
+def landmark_distance_error_max(signals: Signals) -> float:
+    """Estimated minus true distance of the first two beacons, largest magnitude."""
+    estimated = signals["landmark_distance"]
+    first, second = signals["beacons"][:2]
+    return largest(np.abs(estimated - np.hypot(*(second - first))))
+
+
 def cross_track_rms(signals: Signals) -> float:
     """Distance of truth from the tangent of the path at the reference, root mean square."""
     return rms(cross_track(signals))

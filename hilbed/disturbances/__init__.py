@@ -9,6 +9,7 @@ from hilbed.disturbances.bodies import Push, SlipPatch, WheelRadius, push, slip_
 from hilbed.disturbances.bus import BusFault, babbling_node, bus_off, frame_fault, lost_heartbeat, node_reset
 from hilbed.disturbances.drives import LoadTorque, SupplySag, load_torque, supply_sag
 from hilbed.disturbances.schedule import Disturbance, Schedule
+from hilbed.disturbances.sensors import SensorLoss, SensorNan, sensor_loss, sensor_nan
 from hilbed.disturbances.vision import CameraLoss, SpuriousAzimuths, camera_loss, spurious_azimuths
 from hilbed.types import Rng
 
@@ -20,6 +21,8 @@ DISTURBANCES: dict[str, Callable[[Any, int, Rng], Disturbance]] = {
     "supply_sag": supply_sag,
     "spurious_azimuths": spurious_azimuths,
     "camera_loss": camera_loss,
+    "sensor_loss": sensor_loss,
+    "sensor_nan": sensor_nan,
     "drop": frame_fault,
     "corrupt": frame_fault,
     "delay": frame_fault,
@@ -31,7 +34,8 @@ DISTURBANCES: dict[str, Callable[[Any, int, Rng], Disturbance]] = {
 }
 
 DisturbanceSpec = (
-    LoadTorque | SlipPatch | WheelRadius | Push | SupplySag | SpuriousAzimuths | CameraLoss | BusFault
-)
+    LoadTorque | SlipPatch | WheelRadius | Push | SupplySag
+    | SpuriousAzimuths | CameraLoss | SensorLoss | SensorNan | BusFault
+)  # fmt: skip
 
 __all__ = ["DISTURBANCES", "Disturbance", "DisturbanceSpec", "Schedule"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, ceil, cos, sin
+from math import atan2, ceil, cos, sin, tau
 from typing import NamedTuple
 
 import numpy as np
@@ -22,10 +22,13 @@ def wrapped(angle: Array) -> Array:
 
 
 def increments(poses: Array) -> Array:
-    """Returns forward, left (m) and turn (rad) between poses (N, 3), in the frame half-way: (N − 1, 3)."""
+    """Returns forward, left (m) and turn (rad) between poses (N, 3), in the frame half-way: (N − 1, 3).
+
+    Forward is the way along the arc, of which the poses show the chord.
+    """
     turn = wrapped(np.diff(poses[:, 2]))
     a = poses[:-1, 2] + turn / 2
-    dx, dy = np.diff(poses[:, 0]), np.diff(poses[:, 1])
+    dx, dy = (np.diff(poses[:, axis]) / np.sinc(turn / tau) for axis in (0, 1))
     return np.column_stack((dx * np.cos(a) + dy * np.sin(a), dy * np.cos(a) - dx * np.sin(a), turn))
 
 

@@ -37,6 +37,10 @@ class DeadReckoning:
         self._covariance = np.diag(np.square(spec.initial_std))
         self.ignored = 0
 
+    def counts(self) -> dict[str, float]:
+        """Returns how much odometry and how many readings could not be used."""
+        return {"ignored": self.ignored}
+
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:  # noqa: ARG002
         """Returns the pose at `t`: odometry up to its stamp, then its speeds."""
         if usable(odometry):

@@ -47,6 +47,10 @@ class Ekf:
         self._waiting: list[Measurement] = []
         self.ignored = 0
 
+    def counts(self) -> dict[str, float]:
+        """Returns how much odometry and how many readings could not be used."""
+        return {"ignored": self.ignored}
+
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""
         fresh = self._admit(readings)

@@ -81,6 +81,3 @@ class DeadReckoningSpec(Spec):
     kind: Literal["odometry"] = "odometry"
     initial_std: Listed[tuple[Deviation, Deviation, Deviation]] = (0.01, 0.01, 0.01)
     odometry: OdometrySpec = OdometrySpec()
-
-
-EstimatorSpec = EkfSpec | DeadReckoningSpec

@@ -1,4 +1,4 @@
-"""The world: PyBullet moves a two-wheel robot by the torques at its wheels."""
+"""The world: PyBullet moves a robot by the torques at its wheels."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NO_PUSH = (0.0, 0.0, 0.0)
 
 
 class BulletWorld:
-    """Steps one robot; lists are in the order of its drives, left then right.
+    """Steps one robot on two wheels; lists are in the order of its drives, left then right.
 
     After a step: `angles` (rad), `speeds` (rad/s) of the wheels as their encoders turn, forward positive;
     `slips` (m/s), surface speed of the wheel less ground speed at the contact, forward positive. `pose` and
@@ -46,18 +46,20 @@ class BulletWorld:
         # Where contacts carry the weight from the first tick on, rather than after a fall of one tick.
         sunk = -spec.gravity * spec.tick**2
         heading = p.getQuaternionFromEuler([0.0, 0.0, start.yaw])
-        self._robot, self._joints = load(self._client, body, ([start.x, start.y, sunk], heading))
-        add_spin_inertia(self._client, self._robot, self._joints, inertia)
-        for wheel, ratio in zip(self._joints, ratios, strict=True):
+        self._robot, joints = load(self._client, body, ([start.x, start.y, sunk], heading))
+        add_spin_inertia(self._client, self._robot, body, joints, inertia)
+        self._joints = [joints[name] for name in body.joints]
+        self._treads = [joints[name] for name in body.treads]
+        for wheel, ratio in zip(self._treads, ratios, strict=True):
             p.changeDynamics(
                 self._robot, wheel, anisotropicFriction=[1.0, ratio, 1.0], physicsClientId=self._client
             )
         self._centre = self._centre_of_mass()
-        self._friction = [0.0] * len(self._joints)
+        self._friction = [0.0] * len(self._treads)
         self._factors: list[float] = []
         self._coulomb: list[float] = []
         self._targets: list[float] = []
-        self._set_friction([spec.friction] * len(self._joints))
+        self._set_friction([spec.friction] * len(self._treads))
         self._ticks = 0
         self._tick = spec.tick
         self._turned = [0.0] * len(self._joints)
@@ -109,7 +111,7 @@ class BulletWorld:
         self._read(factors)
 
     def _set_friction(self, friction: Sequence[float]) -> None:
-        for wheel, old, new in zip(self._joints, self._friction, friction, strict=True):
+        for wheel, old, new in zip(self._treads, self._friction, friction, strict=True):
             if new != old:
                 p.changeDynamics(self._robot, wheel, lateralFriction=new, physicsClientId=self._client)
         self._friction = list(friction)
@@ -222,7 +224,7 @@ class BulletWorld:
                 contact[9]
                 for contact in p.getContactPoints(self._robot, linkIndexA=wheel, physicsClientId=self._client)
             )
-            for wheel in self._joints
+            for wheel in self._treads
         ]
 
     def close(self) -> None:

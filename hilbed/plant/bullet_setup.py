@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import sqrt
 from pathlib import Path
 
@@ -44,8 +44,8 @@ _NO_LOSSES = {"rollingFriction": 0.0, "spinningFriction": 0.0, "restitution": 0.
 _NO_DAMPING = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
 
 
-def load(client: int, body: Body, at: tuple[Sequence[float], Sequence[float]]) -> tuple[int, list[int]]:
-    """Loads a robot with base_link at a position and quaternion; returns its number and its wheels' links."""
+def load(client: int, body: Body, at: tuple[Sequence[float], Sequence[float]]) -> tuple[int, dict[str, int]]:
+    """Loads a robot with base_link at a position and quaternion; returns its number and its joints' links."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "robot.urdf"
         file.write_text(body.text)
@@ -58,7 +58,6 @@ def load(client: int, body: Body, at: tuple[Sequence[float], Sequence[float]]) -
             raise ScenarioError(f"PyBullet does not load the robot's URDF: {error}") from None
     joints = range(p.getNumJoints(robot, physicsClientId=client))
     by_name = {p.getJointInfo(robot, joint, physicsClientId=client)[1].decode(): joint for joint in joints}
-    wheels = [by_name[name] for name in body.joints]
     for link in (-1, *joints):
         p.changeDynamics(
             robot, link, lateralFriction=0.0, **_NO_LOSSES, **_NO_DAMPING, physicsClientId=client
@@ -69,19 +68,15 @@ def load(client: int, body: Body, at: tuple[Sequence[float], Sequence[float]]) -
     p.setJointMotorControlArray(
         robot, list(joints), p.VELOCITY_CONTROL, forces=[0.0] * len(joints), physicsClientId=client
     )
-    return robot, wheels
+    return robot, by_name
 
 
-def add_spin_inertia(client: int, robot: int, wheels: Sequence[int], inertia: float) -> None:
-    """Adds what turns with a wheel behind its gear (kg m²) to the inertia about its axle."""
-    for wheel in wheels:
-        about_x, about_y, about_z = p.getDynamicsInfo(robot, wheel, physicsClientId=client)[2]
-        p.changeDynamics(
-            robot,
-            wheel,
-            localInertiaDiagonal=[about_x, about_y + inertia, about_z],
-            physicsClientId=client,
-        )
+def add_spin_inertia(client: int, robot: int, body: Body, joints: Mapping[str, int], inertia: float) -> None:
+    """Adds what turns with each drive behind its gear (kg m²): about a wheel's axle, a steering axis's z."""
+    for name in body.joints:
+        x, y, z = p.getDynamicsInfo(robot, joints[name], physicsClientId=client)[2]
+        diagonal = [x, y + inertia, z] if name in body.driven else [x, y, z + inertia]
+        p.changeDynamics(robot, joints[name], localInertiaDiagonal=diagonal, physicsClientId=client)
 
 
 def grip_ratios(spec: BulletSpec, body: Body, inertia: float) -> list[float]:
@@ -96,24 +91,27 @@ def grip_ratios(spec: BulletSpec, body: Body, inertia: float) -> list[float]:
     try:
         p.setGravity(0.0, 0.0, 0.0, physicsClientId=client)
         ratios = []
-        for k in range(len(body.joints)):
-            along, across = (_mobility(client, body, inertia, k, force) for force in ((1.0, 0.0), (0.0, 1.0)))
+        for tread in body.treads:
+            along, across = (
+                _mobility(client, body, inertia, tread, force) for force in ((1.0, 0.0), (0.0, 1.0))
+            )
             ratios.append(sqrt(along / across))
         return ratios
     finally:
         p.disconnect(client)
 
 
-def _mobility(client: int, body: Body, inertia: float, k: int, force: tuple[float, float]) -> float:
+def _mobility(client: int, body: Body, inertia: float, tread: str, force: tuple[float, float]) -> float:
     """Returns the speed of a free robot's contact point along 1 N there for one step."""
-    robot, wheels = load(client, body, ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]))
-    add_spin_inertia(client, robot, wheels, inertia)
-    x, y, z = p.getLinkState(robot, wheels[k], physicsClientId=client)[0]
+    robot, joints = load(client, body, ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]))
+    add_spin_inertia(client, robot, body, joints, inertia)
+    wheel = joints[tread]
+    x, y, z = p.getLinkState(robot, wheel, physicsClientId=client)[0]
     p.applyExternalForce(
-        robot, wheels[k], [*force, 0.0], [x, y, z - body.radius], p.WORLD_FRAME, physicsClientId=client
+        robot, wheel, [*force, 0.0], [x, y, z - body.radius], p.WORLD_FRAME, physicsClientId=client
     )
     p.stepSimulation(physicsClientId=client)
-    state = p.getLinkState(robot, wheels[k], computeLinkVelocity=1, physicsClientId=client)
+    state = p.getLinkState(robot, wheel, computeLinkVelocity=1, physicsClientId=client)
     (vx, vy, _), (wx, wy, _) = state[6], state[7]
     p.removeBody(robot, physicsClientId=client)
     moved: float = force[0] * (vx - wy * body.radius) + force[1] * (vy + wx * body.radius)

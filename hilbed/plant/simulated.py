@@ -61,6 +61,9 @@ class Supply(Protocol):
     def voltage(self, current: float, drop: float) -> float: ...
 
 
+STEERING = "steering"
+"""Name of the drive whose angle is logged."""
+
 Collect: TypeAlias = Callable[[Nanos], None]
 """Waits for the answers of all firmware that is elsewhere to the pins that it has been shown."""
 
@@ -96,6 +99,8 @@ class SimulatedPlant:
         self._now: Nanos = 0
         self._drawn = 0.0  # A out of the supply, over the last tick
         self._log = array("d")
+        self._steering = next((k for k, axis in enumerate(self._axes) if axis.name == STEERING), None)
+        self._angles = array("d")  # of the steering axis, a row a tick
         self._coulomb = [axis.coulomb for axis in self._axes]
         self._led = [(k, axis) for k, axis in enumerate(self._axes) if axis.target is not None]
         self._collect = collect
@@ -119,6 +124,8 @@ class SimulatedPlant:
         nothing = [0.0] * len(self._axes)
         loads = self._schedule.effects.load_torque
         self._log.extend((*self._world.speeds, *nothing, *nothing, *loads, *nothing, *nothing, *nothing))
+        if self._steering is not None:
+            self._angles.append(self._world.angles[self._steering])
         for sensor in self._sensors:
             if sensor.due <= 0:
                 sensor.sample(self.truth())
@@ -160,6 +167,8 @@ class SimulatedPlant:
         self._log.extend(
             (*world.speeds, *currents, *world.slips, *effects.load_torque, *torques, *references, *duties)
         )
+        if self._steering is not None:
+            self._angles.append(world.angles[self._steering])
 
     def _present(self, t: Nanos, volts: int) -> None:
         """Shows all pins at once to what firmware is elsewhere, so that it works side by side."""
@@ -177,4 +186,6 @@ class SimulatedPlant:
         for k, axis in enumerate(self._axes):
             for j, signal in enumerate(SIGNALS):
                 columns[f"tick/drive/{axis.name}/{signal}"] = rows[:, j * len(self._axes) + k].copy()
+        if self._steering is not None:
+            columns[f"tick/drive/{STEERING}/angle"] = np.array(self._angles[first:])
         return columns

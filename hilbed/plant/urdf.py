@@ -15,8 +15,9 @@ Element = ElementTree.Element
 class Body(NamedTuple):
     """A robot ready for the physics.
 
-    text: URDF without visuals; joints: names of the wheel joints in the order of the drives; radius and track
-    m; mass kg, of all of it; spin kg m², of one wheel about its axle.
+    text: URDF without visuals; joints: names of joints in the order of the drives, that of a steering axis
+    last; radius and track m; mass kg, of all of it; spin kg m², of one wheel about its axle; idle: joints of
+    wheels that nobody drives; wheelbase m and steered kg m² (what a steering axis turns), 0 without one.
     """
 
     text: str
@@ -25,14 +26,29 @@ class Body(NamedTuple):
     track: float
     mass: float
     spin: float
+    idle: tuple[str, ...] = ()
+    wheelbase: float = 0.0
+    steered: float = 0.0
+
+    @property
+    def driven(self) -> tuple[str, ...]:
+        """Joints of the wheels that have a drive."""
+        return self.joints[:-1] if self.steered else self.joints
+
+    @property
+    def treads(self) -> tuple[str, ...]:
+        """Joints of all wheels on the ground, those with a drive first."""
+        return (*self.driven, *self.idle)
 
 
-def moved_inertia(body: Body, reflected: float) -> float:
-    """Returns what each wheel has to turn as the robot goes straight on (kg m²), the robot's mass included.
+def moved_inertia(body: Body, reflected: float) -> list[float]:
+    """Returns what each drive has to turn as the robot goes straight on (kg m²), the robot's mass included.
 
-    reflected: kg m² that turns with a wheel behind its gear.
+    reflected: kg m² that turns with a wheel, or a steering axis, behind its gear.
     """
-    return body.spin + reflected + body.mass * body.radius**2 / len(body.joints)
+    wheel = body.spin + reflected + body.mass * body.radius**2 / len(body.driven)
+    steering = [body.steered + reflected] if body.steered else []
+    return [wheel] * len(body.driven) + steering
 
 
 def read_urdf(path: Path) -> Element:
@@ -92,20 +108,26 @@ def diffdrive(path: Path, radius: float, track: float) -> Body:
     root = read_urdf(path)
     joints = ("left_wheel_joint", "right_wheel_joint")
     for name, side in zip(joints, (0.5, -0.5), strict=True):
-        joint, wheel = _wheel(path, root, name, joints)
+        joint, wheel = turning(path, root, name, joints)
         joint.find("origin").set("xyz", f"0 {side * track!r} {radius!r}")  # type: ignore[union-attr]
-        spin = _scale_wheel(path, wheel, radius)
+        spin = scale_wheel(path, wheel, radius)
+    text, mass = bare(path, root)
+    return Body(text, joints, radius, track, mass, spin)
+
+
+def bare(path: Path, root: Element) -> tuple[str, float]:
+    """Returns the URDF without what physics has no use for, and the mass (kg) of all of it."""
     _drop_frames(root)
     for link in root.iterfind("link"):
         for visual in link.findall("visual"):
             link.remove(visual)
     for mesh in root.iter("mesh"):  # PyBullet gets the text in another place
         mesh.set("filename", str((path.parent / mesh.get("filename", "")).resolve()))
-    mass = sum(_number(path, mass, "value") for mass in root.iter("mass"))
-    return Body(ElementTree.tostring(root, encoding="unicode"), joints, radius, track, mass, spin)
+    mass = sum(number(path, mass, "value") for mass in root.iter("mass"))
+    return ElementTree.tostring(root, encoding="unicode"), mass
 
 
-def _wheel(path: Path, root: Element, name: str, wanted: tuple[str, ...]) -> tuple[Element, Element]:
+def turning(path: Path, root: Element, name: str, wanted: tuple[str, ...]) -> tuple[Element, Element]:
     """Returns a wheel's joint and link, complete enough to be scaled."""
     joints = {joint.get("name"): joint for joint in root.iter("joint")}
     if missing := [joint for joint in wanted if joint not in joints]:
@@ -123,7 +145,7 @@ def _wheel(path: Path, root: Element, name: str, wanted: tuple[str, ...]) -> tup
     return joint, link
 
 
-def _scale_wheel(path: Path, wheel: Element, radius: float) -> float:
+def scale_wheel(path: Path, wheel: Element, radius: float) -> float:
     """Takes a wheel to another radius, inertia with its square at equal mass; returns that of its spin."""
     tread = wheel.find("collision/geometry/sphere")
     if tread is None:
@@ -133,14 +155,14 @@ def _scale_wheel(path: Path, wheel: Element, radius: float) -> float:
     inertia = wheel.find("inertial/inertia")
     if inertia is None:
         raise ScenarioError(f"{path}: {wheel.get('name')} has no <inertial> with mass and inertia")
-    factor = radius / _number(path, tread, "radius")
+    factor = radius / number(path, tread, "radius")
     tread.set("radius", repr(radius))
     for axis in ("ixx", "iyy", "izz"):
-        inertia.set(axis, repr(_number(path, inertia, axis) * factor**2))
-    return _number(path, inertia, "iyy")
+        inertia.set(axis, repr(number(path, inertia, axis) * factor**2))
+    return number(path, inertia, "iyy")
 
 
-def _number(path: Path, element: Element, key: str) -> float:
+def number(path: Path, element: Element, key: str) -> float:
     """Returns an attribute that only makes sense as a positive number."""
     text = element.get(key, "nothing")
     try:

@@ -12,9 +12,11 @@ import numpy as np
 from hilbed.clock import MILLISECOND
 from hilbed.record.rounds import first_rounds
 from hilbed.record.row import WIDTH, Batch, Row, Witnessed
-from hilbed.types import Array, Innovation, Nanos, Reading, Transfer
+from hilbed.types import Array, DriveSignals, Innovation, Nanos, Reading, Transfer
 
-_UNKNOWN = (nan, nan, nan)
+MEASURED = DriveSignals._fields
+OF_STEERING = ("angle_ref", "angle_measured")
+_UNKNOWN = (nan,) * len(MEASURED)
 _NS = 1e-9
 
 
@@ -96,11 +98,12 @@ class Columns:
         return signals
 
     def _measured(self, count: int) -> dict[str, Array]:
-        rows = np.array(self._drive_rows).reshape(count, len(self._drives), 3)
+        rows = np.array(self._drive_rows).reshape(count, len(self._drives), len(MEASURED))
         signals = {}
         for k, drive in enumerate(self._drives):
-            for column, name in enumerate(("speed_ref", "speed_measured", "current_measured")):
-                signals[f"drive/{drive}/{name}"] = rows[:, k, column].copy()
+            for column, name in enumerate(MEASURED):
+                if not (name in OF_STEERING and np.isnan(rows[:, k, column]).all()):
+                    signals[f"drive/{drive}/{name}"] = rows[:, k, column].copy()
         return signals
 
     def _read(self, last: float) -> dict[str, np.ndarray]:
@@ -144,6 +147,8 @@ def _poses(rows: Array) -> dict[str, np.ndarray]:
         "estimate": rows[:, 12:15],
         "covariance": rows[:, 15:24].reshape(-1, 3, 3),
     }
+    if not np.isnan(rows[:, 24]).all():
+        columns["landmark_distance"] = rows[:, 24]
     return {name: np.ascontiguousarray(column) for name, column in columns.items()}
 
 

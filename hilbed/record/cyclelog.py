@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 
 import numpy as np
 
 from hilbed.record import messages
 from hilbed.record.channels import Channels, log_packed
 from hilbed.record.row import Row
-from hilbed.types import Array, Nanos
+from hilbed.types import Array, DriveSignals, Nanos
 
 POSES = ("truth", "estimate", "odometry", "reference")
 _POSE = ("x", "y", "yaw")
-_DRIVE = ("speed_ref", "speed_measured", "current_measured")
+_DRIVE = DriveSignals._fields
 _THINNED = 5  # every fifth pose is enough to look at: /cycle has them all
 _CYCLE = {**dict.fromkeys((*POSES, "error", "sigma"), _POSE), "command": ("v", "w"), "": ("covariance[9]",)}
 
@@ -34,10 +35,11 @@ class CycleLog:
             return
         stamps = np.array([row.cycle.t for row in rows]) + self._offset
         self._log_cycles(stamps, np.array([row.numbers for row in rows]))
-        drives = tuple(rows[0].cycle.odometry.drives)
+        drives = {name: _fields(one) for name, one in rows[0].cycle.odometry.drives.items()}
         if drives:
-            log = self._channels.rows("/drives", "Drives", dict.fromkeys(drives, _DRIVE))
-            log(stamps, np.array([_signals(row, drives) for row in rows]))
+            log = self._channels.rows("/drives", "Drives", drives)
+            widths = [(name, len(fields)) for name, fields in drives.items()]
+            log(stamps, np.array([_signals(row, widths) for row in rows]))
 
     def _log_cycles(self, stamps: np.ndarray, rows: Array) -> None:
         truth, odometry, reference = rows[:, 0:3], rows[:, 3:6], rows[:, 6:9]
@@ -56,6 +58,11 @@ class CycleLog:
             log_packed(self._pose[name], stamps[known], messages.pose_messages(stamps[known], pose[known]))
 
 
-def _signals(row: Row, drives: Sequence[str]) -> list[float]:
+def _fields(drive: DriveSignals) -> tuple[str, ...]:
+    """Returns what a drive has: only a steering axis has an angle."""
+    return _DRIVE if isfinite(drive.angle_ref) else _DRIVE[:3]
+
+
+def _signals(row: Row, widths: Sequence[tuple[str, int]]) -> list[float]:
     of = row.cycle.odometry.drives
-    return [number for name in drives for number in of[name]]
+    return [number for name, width in widths for number in of[name][:width]]

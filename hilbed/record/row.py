@@ -23,14 +23,15 @@ class Witnessed(NamedTuple):
 class Row(NamedTuple):
     """A control period and its numbers, worked out once for all sinks.
 
-    numbers: truth, odometry by dead reckoning, reference (3 each), command (2), estimate (3), covariance (9).
+    numbers: truth, odometry by dead reckoning, reference (3 each), command (2), estimate (3), covariance (9),
+    landmark distance.
     """
 
     cycle: Cycle
     numbers: list[float]
 
 
-WIDTH = 23  # numbers a row
+WIDTH = 24  # numbers a row
 
 
 def row_of(cycle: Cycle, odometry: Pose, reference: Pose) -> Row:
@@ -39,6 +40,7 @@ def row_of(cycle: Cycle, odometry: Pose, reference: Pose) -> Row:
     numbers = [*cycle.truth.pose, *odometry, *reference, *cycle.command, *estimate.mean.tolist()[:3]]
     for line in estimate.covariance.tolist()[:3]:
         numbers += line[:3]
+    numbers.append(estimate.landmark_distance)
     return Row(cycle, numbers)
 
 

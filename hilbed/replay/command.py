@@ -16,7 +16,6 @@ from hilbed.record.notes import Notes
 from hilbed.replay.differences import Difference, compared, differences
 from hilbed.replay.recording import Recording, Signals, read_recording
 from hilbed.replay.rig import rig_of
-from hilbed.robots import ROBOTS
 from hilbed.scenario.load import version_warnings
 from hilbed.types import HilbedError
 from hilbed.versions import versions
@@ -49,7 +48,7 @@ def perform(recording: Recording) -> Replayed:
     """Runs odometry, estimator and controller over as many cycles as were recorded."""
     rig, start, reference = rig_of(recording)
     scenario = recording.loaded.scenario
-    columns = Columns(ROBOTS[scenario.robot.kind].drives)
+    columns = Columns(scenario.robot.drives)
     journal = Journal(Notes(), [columns], rig.cost, start, reference)
     reason = ""
     try:

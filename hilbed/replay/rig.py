@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from math import nan
 
 from hilbed.build.known import nodes_of, start_of, surroundings
-from hilbed.build.minds import make_controller, make_estimator
+from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.can.base import CanBase
 from hilbed.clock import nanos
 from hilbed.cost import Cost
@@ -79,8 +79,8 @@ def rig_of(recording: Recording) -> tuple[Rig, Pose, Reference | None]:
     rig = Rig(
         CanBase(robot, RecordedBus(recording.frames), nodes, scenario.bus),
         sensors,
-        make_estimator(scenario.estimator, surroundings(scenario, spec, start)),
-        make_controller(scenario.controller, reference, period),
+        make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
+        make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
         NoPlant(),
         period,
         Cost(),

@@ -36,7 +36,15 @@ def _summary(run: Run) -> str:
 
 
 def _figures(run: Run) -> str:
-    from hilbed.report import bus_figures, drive_figures, pose_figures, sensor_figures, style, time_figures
+    from hilbed.report import (
+        bus_figures,
+        drive_figures,
+        pose_figures,
+        position_figures,
+        sensor_figures,
+        style,
+        time_figures,
+    )
 
     with style.drawing():
         cards = [
@@ -48,10 +56,12 @@ def _figures(run: Run) -> str:
             page.card("Slip: surface of the wheel against the ground", drive_figures.slip(run)),
             page.card("Azimuth residuals, by beacon", sensor_figures.residuals(run, "azimuth")),
             page.card("Range residuals, by beacon", sensor_figures.residuals(run, "range")),
+            page.card("Position residuals", position_figures.residuals(run)),
             page.card("Innovations", sensor_figures.nis(run)),
             page.card("Bus load in each 0.1 s", bus_figures.bus_load(run)),
             page.card("Bus latency by identifier", bus_figures.latency(run)),
             page.card("Real time", time_figures.lateness(run), time_figures.summary(run)),
+            page.card("Counted", page.counts(run)),
         ]
     return "".join(cards)
 

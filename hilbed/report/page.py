@@ -149,6 +149,17 @@ def _metric(name: str, value: float | None) -> str:
     return f"<tr><th>{escape(name)}</th>{cells}</tr>"
 
 
+def counts(run: Run) -> str | None:
+    """Returns what estimator and controller have counted."""
+    rows = "".join(
+        f'<tr><th>{escape(part)}</th><td>{escape(name)}</td><td class="number">'
+        f"{'none' if value is None else _number(value)}</td></tr>"
+        for part, found in (run.verdict.get("counts") or {}).items()
+        for name, value in found.items()
+    )
+    return f"<table><tbody>{rows}</tbody></table>" if rows else None
+
+
 def files(run: Run) -> str:
     """Returns links to what else is in the folder, and the fingerprints of the run."""
     names = [name for name in (MCAP, CAN, SIGNALS, VERDICT) if (run.folder / name).exists()]
@@ -160,12 +171,16 @@ def files(run: Run) -> str:
 
 
 def document(run: Run, body: str) -> str:
-    """Returns the whole page."""
-    title = escape(f"{run.verdict['scenario']}, seed {run.verdict['seed']}")
+    """Returns the whole page of a run."""
+    return whole(f"{run.verdict['scenario']}, seed {run.verdict['seed']}", body)
+
+
+def whole(title: str, body: str) -> str:
+    """Returns a whole page."""
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{title} · hilbed</title><style>{_variables()}{_sheet()}</style></head>\n"
+        f"<title>{escape(title)} · hilbed</title><style>{_variables()}{_sheet()}</style></head>\n"
         f"<body><main>{body}</main></body></html>\n"
     )
 

@@ -20,6 +20,7 @@ _STYLES: dict[str, dict[str, Any]] = {
     "truth": {"linewidth": 1.5},
     "estimate": {"linewidth": 1.0},
 }
+_NOWHERE = np.empty((0, 2))
 
 
 def path(run: Run) -> str | None:
@@ -29,6 +30,10 @@ def path(run: Run) -> str | None:
     if not shown:
         return None
     figure, (axes,) = style.sheet(1, 4.4)
+    for kind in ("position", "pose"):
+        measured = signals.get(f"{kind}/measured", _NOWHERE)[:, :2]
+        dots = measured[:: max(1, len(measured) // 1000)]
+        axes.scatter(dots[:, 0], dots[:, 1], s=5, linewidths=0, color=style.STAND_IN["muted"], alpha=0.6)
     for name, pose in shown.items():
         step = max(1, len(pose) // 4000)
         colour = style.STAND_IN[name]

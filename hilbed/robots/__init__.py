@@ -1,9 +1,14 @@
 """Robots: their kinematics and what their frames mean."""
 
+from collections.abc import Callable
+from typing import Any
+
+from hilbed.ports import Robot
 from hilbed.robots.diffdrive import DiffDrive, DiffDriveSpec
+from hilbed.robots.tricycle import Tricycle, TricycleSpec
 
-ROBOTS = {"diffdrive": DiffDrive}
+RobotSpec = DiffDriveSpec | TricycleSpec
 
-RobotSpec = DiffDriveSpec
+ROBOTS: dict[str, Callable[[Any], Robot]] = {"diffdrive": DiffDrive, "tricycle": Tricycle}
 
-__all__ = ["ROBOTS", "DiffDrive", "DiffDriveSpec", "RobotSpec"]
+__all__ = ["ROBOTS", "DiffDrive", "DiffDriveSpec", "RobotSpec", "Tricycle", "TricycleSpec"]

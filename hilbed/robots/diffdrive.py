@@ -21,6 +21,11 @@ class DiffDriveSpec(Spec):
     urdf: str = "package:urdf/diffdrive.urdf"
     start: Listed[tuple[Finite, Finite, Finite]] | None = None
 
+    @property
+    def drives(self) -> tuple[str, ...]:
+        """Names of its drives, in the order in which everybody lists them."""
+        return DiffDrive.drives
+
 
 class DiffDrive:
     """Kinematics of Slimane et al. 2014 (3): v = R (ω_l + ω_r) / 2, w = R (ω_r − ω_l) / E."""
@@ -40,3 +45,15 @@ class DiffDrive:
         """Returns distance (m) and turn (rad) for angles (rad) of the wheels, or v and w for rates."""
         left, right = turned
         return self._radius * (left + right) / 2, self._radius * (right - left) / self._track
+
+    def limited(self, command: Command) -> Command:
+        """Returns the command: its limits are those of its controller and its drives."""
+        return command
+
+    def twist(self, command: Command) -> tuple[float, float]:
+        """Returns speed (m/s) of the axle's midpoint and yaw rate (rad/s): those of the command."""
+        return command
+
+    def command(self, v: float, w: float) -> Command:
+        """Returns the command for a speed (m/s) and a yaw rate (rad/s) of the axle."""
+        return Command(v, w)

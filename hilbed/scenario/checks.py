@@ -12,20 +12,18 @@ from hilbed.can.load import periodic_load
 from hilbed.can.specs import BusSpec, NodeSpec, resolve
 from hilbed.can.traffic import CONTROLLER, senders
 from hilbed.clock import nanos
-from hilbed.control import ControllerSpec, ReferenceSpec
+from hilbed.control import ON_THEIR_OWN, ControllerSpec, ReferenceSpec
 from hilbed.criteria import METRICS, CriterionSpec, metric_of
 from hilbed.disturbances import DisturbanceSpec
 from hilbed.disturbances.bus import BusFault
-from hilbed.estimation import EstimatorSpec
-from hilbed.plant import PlantSpec, RecordedSpec, SimulatedSpec
+from hilbed.plant import KinematicSpec, PlantSpec, RecordedSpec, SimulatedSpec
 from hilbed.plant.chopper import Switched, periods
-from hilbed.plant.urdf import diffdrive, meshes
+from hilbed.plant.urdf import meshes
 from hilbed.problems import Problem, nearest
-from hilbed.robots import ROBOTS, RobotSpec
-from hilbed.scenario import files
+from hilbed.robots import RobotSpec
+from hilbed.scenario import files, matches, sensing
+from hilbed.scenario.bodies import body_of
 from hilbed.sensors import SensorSpec
-from hilbed.sensors.camera import names
-from hilbed.sensors.pan import make_pan
 from hilbed.types import ScenarioError
 
 Problems = Iterator[Problem]
@@ -71,9 +69,15 @@ def _ticks(period: float, plant: PlantSpec) -> Problems:
             yield Problem(("plant", "chopper"), f"plant.chopper: {error}")
 
 
-def _nodes(robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec, period: float) -> Problems:
+def _nodes(
+    robot: RobotSpec, plant: PlantSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec, period: float
+) -> Problems:
+    if isinstance(plant, KinematicSpec):
+        if nodes:
+            yield Problem(("nodes",), "nodes: an ideal robot has no drives on a bus; plant: bullet has")
+        return
     try:
-        resolved = resolve(nodes, ROBOTS[robot.kind].drives)
+        resolved = resolve(nodes, robot.drives)
     except ScenarioError as error:
         yield from (Problem(("nodes",), line) for line in str(error).splitlines())
         return
@@ -85,7 +89,8 @@ def _nodes(robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec, period
 
 def _joined(plant: PlantSpec, bus: BusSpec) -> Problems:
     if bus.carried and not isinstance(plant, SimulatedSpec):
-        text = f"bus.interface: {bus.interface}; a recorded robot has no bus that could be joined to another"
+        robot = "an ideal" if isinstance(plant, KinematicSpec) else "a recorded"
+        text = f"bus.interface: {bus.interface}; {robot} robot has no bus that could be joined to another"
         yield Problem(("bus", "interface"), text)
 
 
@@ -107,7 +112,7 @@ def _start(plant: PlantSpec, robot: RobotSpec) -> Problems:
 
 def _path(plant: PlantSpec, reference: ReferenceSpec | None) -> Problems:
     if isinstance(plant, SimulatedSpec) and reference is not None:
-        box = reference.path().extent()
+        box = reference.build().extent()
         if max(map(abs, box)) > plant.arena:
             reach = f"x {box[0]:g} … {box[2]:g}, y {box[1]:g} … {box[3]:g} m"
             text = f"reference: the path reaches {reach}, outside the world of ±{plant.arena:g} m"
@@ -128,7 +133,7 @@ def _body(robot: RobotSpec, plant: PlantSpec, folder: Path) -> Problems:
         with suppress(ScenarioError):
             path = files.resolve(robot.urdf, folder)
             try:
-                diffdrive(path, robot.wheel_radius, robot.track)
+                body_of(robot, path)
                 for mesh in meshes(path, "collision"):
                     files.beside(mesh, robot.urdf, folder)
             except ScenarioError as error:
@@ -154,38 +159,12 @@ def _recording(plant: PlantSpec, duration: float, period: float, folder: Path) -
                 yield Problem(("duration",), text)
 
 
-def _cameras(sensors: Mapping[str, SensorSpec], plant: PlantSpec, estimator: EstimatorSpec) -> Problems:
-    if not isinstance(plant, SimulatedSpec):
-        return
-    for name, sensor in sensors.items():
-        try:
-            make_pan(sensor.pan, names(sensor, plant.beacons))
-        except ScenarioError as error:
-            yield Problem(("sensors", name, "pan"), f"sensors.{name}.pan: {error}")
-    mounts = {sensor.mount[:2]: name for name, sensor in sensors.items()}
-    if estimator.kind == "ekf" and len(mounts) > 1:
-        text = f"sensors: {' and '.join(mounts.values())} have different mounts; ekf knows one for all"
-        yield Problem(("sensors",), text)
-
-
-def _food(estimator: EstimatorSpec, sensors: Mapping[str, SensorSpec], plant: PlantSpec) -> Problems:
-    """An estimator that corrects needs something to correct by."""
-    if estimator.kind != "ekf" or not isinstance(plant, SimulatedSpec):
-        return
-    if not sensors:
-        text = "estimator: ekf needs readings and there are no sensors; add one, or use the kind odometry"
-        yield Problem(("estimator",), text)
-    elif not plant.beacons:
-        text = "plant.beacons: the camera sees nothing without beacons, and ekf needs readings"
-        yield Problem(("plant", "beacons"), text)
-
-
 def _guidance(
     controller: ControllerSpec | None, reference: ReferenceSpec | None, plant: PlantSpec
 ) -> Problems:
-    if isinstance(plant, SimulatedSpec) and controller is None:
+    if not isinstance(plant, RecordedSpec) and controller is None:
         yield Problem(("controller",), "controller is missing")
-    if controller is not None and reference is None:
+    if controller is not None and reference is None and controller.kind not in ON_THEIR_OWN:
         yield Problem(("reference",), f"reference is missing: the controller {controller.kind} follows one")
 
 
@@ -200,15 +179,19 @@ def _recorded(
             )
         for k in range(len(disturbances)):
             yield Problem(("disturbances", k), f"disturbances.{k}: nothing can disturb a recorded robot")
+    if isinstance(plant, KinematicSpec):
+        for k, disturbance in enumerate(disturbances):
+            if disturbance.kind not in sensing.UPSETS:
+                text = f"disturbances.{k}: {disturbance.kind} cannot befall an ideal robot; plant: bullet can"
+                yield Problem(("disturbances", k), text)
 
 
 def _disturbed(
     disturbances: list[DisturbanceSpec],
     robot: RobotSpec,
-    sensors: Mapping[str, SensorSpec],
     nodes: Mapping[str, NodeSpec],
 ) -> Problems:
-    drives = ROBOTS[robot.kind].drives
+    drives = robot.drives
     for k, disturbance in enumerate(disturbances):
         place = f"disturbances.{k}"
         drive = getattr(disturbance, "drive", None)
@@ -218,17 +201,13 @@ def _disturbed(
         if disturbance.kind == "load_torque" and drive in [n for n, s in nodes.items() if s.kind == "real"]:
             text = f"{place}.drive: {drive} is real, and nothing here can load its shaft"
             yield Problem(("disturbances", k, "drive"), text)
-        if disturbance.kind in ("camera_loss", "spurious_azimuths") and not sensors:
-            yield Problem(
-                ("disturbances", k), f"{place}: {disturbance.kind} needs a camera among the sensors"
-            )
 
 
 def _bus_faults(
     disturbances: list[DisturbanceSpec], robot: RobotSpec, nodes: Mapping[str, NodeSpec], bus: BusSpec
 ) -> Problems:
     """A fault of the bus needs the node or the frames that it is about."""
-    drives = ROBOTS[robot.kind].drives
+    drives = robot.drives
     with suppress(ScenarioError):
         sent = senders(resolve(nodes, drives))
         for k, fault in enumerate(disturbances):
@@ -259,7 +238,7 @@ def _no_such(
 
 
 def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems:
-    drives = ROBOTS[robot.kind].drives
+    drives = robot.drives
     for name, criterion in criteria.items():
         if criterion.drive is not None and criterion.drive not in drives:
             known = nearest(criterion.drive, drives)
@@ -273,5 +252,6 @@ def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems
 
 CHECKS: tuple[Callable[..., Problems], ...] = (
     _periods, _ticks, _nodes, _joined, _beacons, _start, _path,
-    _files, _body, _recording, _cameras, _food, _guidance, _recorded, _disturbed, _bus_faults, _judged,
+    _files, _body, _recording, _guidance, _recorded, _disturbed, _bus_faults, _judged,
+    *sensing.CHECKS, *matches.CHECKS,
 )  # fmt: skip

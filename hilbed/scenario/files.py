@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from hilbed.plant import PlantSpec, RecordedSpec
+from hilbed.plant import KinematicSpec, PlantSpec, RecordedSpec
 from hilbed.resources import package_file
 from hilbed.robots import RobotSpec
 from hilbed.types import ScenarioError
@@ -17,6 +17,8 @@ def named(robot: RobotSpec, plant: PlantSpec) -> list[tuple[tuple[str, str], str
     """Returns the files that a scenario names and needs, each with the path of its key."""
     if isinstance(plant, RecordedSpec):
         return [(("plant", "file"), plant.file)]
+    if isinstance(plant, KinematicSpec):
+        return []
     return [(("robot", "urdf"), robot.urdf)]
 
 

@@ -2,22 +2,40 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
-from hilbed.can.specs import BusSpec, NodeSpec, TerminalSpec
+from hilbed.can.specs import BusSpec, NodeSpec, TerminalSpec, with_table
 from hilbed.control import ControllerSpec, ReferenceSpec
 from hilbed.criteria import CriterionSpec
 from hilbed.disturbances import DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
 from hilbed.pacer import RealtimeSpec
 from hilbed.plant import PlantSpec
-from hilbed.robots import RobotSpec
+from hilbed.robots import DiffDriveSpec, RobotSpec
 from hilbed.sensors import SensorSpec
 from hilbed.spec import Positive, Spec, Word
 
 ByKind = Field(discriminator="kind")
+
+
+def _diffdrive(value: Any) -> Any:
+    return {"kind": "diffdrive", **value} if isinstance(value, dict) else value
+
+
+DIFFDRIVE_BY_DEFAULT = BeforeValidator(_diffdrive)
+"""On the robot's block: without a kind it is a differential drive."""
+
+
+def _tables(value: Any) -> Any:
+    if not isinstance(value, dict):
+        return value
+    return {name: with_table(name, block) for name, block in value.items()}
+
+
+TABLES_BY_NAME = BeforeValidator(_tables)
+"""On the drives: the steering axis is of the type that holds a position."""
 
 
 class Scenario(Spec):
@@ -30,13 +48,13 @@ class Scenario(Spec):
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     duration: Positive
     period: Positive = 0.01
-    robot: Annotated[RobotSpec, Word] = RobotSpec()
+    robot: Annotated[RobotSpec, ByKind, DIFFDRIVE_BY_DEFAULT, Word] = DiffDriveSpec()
     plant: Annotated[PlantSpec, ByKind, Word]
-    nodes: dict[str, Annotated[NodeSpec, Word]] = {}
+    nodes: Annotated[dict[str, Annotated[NodeSpec, Word]], TABLES_BY_NAME] = {}
     bus: Annotated[BusSpec, Word] = BusSpec()
     terminal: TerminalSpec | None = None
     real_speed_limit: Positive = 0.1
-    sensors: dict[str, Annotated[SensorSpec, Word]] = {}
+    sensors: dict[str, Annotated[SensorSpec, ByKind, Word]] = {}
     estimator: Annotated[EstimatorSpec, ByKind, Word]
     controller: Annotated[ControllerSpec, ByKind, Word] | None = None
     reference: Annotated[ReferenceSpec, ByKind] | None = None

@@ -62,6 +62,10 @@ class CameraSpec(DeliverySpec):
     def lens(self) -> Lens:
         return Lens(self.width, self.height, radians(self.fov_deg))
 
+    def kinds(self) -> dict[str, int]:
+        """Returns what it measures, with the number of components."""
+        return {"azimuth": 1}
+
 
 class Exposure(NamedTuple):
     """A frame under way: at a pan angle (rad, robot's frame), with a mean number of false detections."""

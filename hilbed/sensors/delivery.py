@@ -16,11 +16,12 @@ from hilbed.types import Nanos, Reading, Rng
 class DeliverySpec(Spec):
     """How a sensor's samples come to the controller.
 
-    rate: samples a second, above 0 and at most 1000 Hz, the first one at t = 0; latency: s from exposure to
-    delivery, at most 10; loss: probability that a whole sample never arrives.
+    rate: samples a second, above 0 and at most 1000 Hz; first: s, when the first one is taken; latency: s
+    from exposure to delivery, at most 10; loss: probability that a whole sample never arrives.
     """
 
     rate: Annotated[float, Field(gt=0, le=1000)] = 10.0
+    first: NonNegative = 0.0
     latency: Annotated[NonNegative, Field(le=10)] = 0.05
     loss: Fraction = 0.0
 
@@ -32,14 +33,15 @@ class Delivery:
         self._rate, self._latency, self._loss = spec.rate, nanos(spec.latency), spec.loss
         self._rng = rng
         self._count = 0
-        self.due: Nanos = 0
+        self._first = nanos(spec.first)
+        self.due: Nanos = self._first
         self._waiting: deque[Reading] = deque()
 
     def expose(self, t: Nanos) -> Nanos:
         """Notes a sample taken at t, makes the next one due, and returns when this one is delivered."""
         while self.due <= t:
             self._count += 1
-            self.due = round(self._count * SECOND / self._rate)
+            self.due = self._first + round(self._count * SECOND / self._rate)
         return t + self._latency
 
     def put(self, readings: Iterable[Reading]) -> bool:

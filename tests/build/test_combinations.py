@@ -14,11 +14,18 @@ from hilbed.control import ReferenceSpec
 from hilbed.runner import perform
 from hilbed.scenario.load import load
 from hilbed.sensors.pan_spec import AnyPan
+from hilbed.types import ScenarioError
 from tests.build.scenarios import small
 from tests.build.test_kinds import kinds
 
 BLOCKS = {"waypoints": {"points": [[0, 0], [2, 0], [3, 2]]}}  # the others need no more than their kind
-LOOPS = get_args(NodeSpec.model_fields["loop"].annotation)
+SIGHTS = (
+    "sensors.gps={kind: position, latency: 0}",
+    "sensors.fix={kind: position, yaw_noise: 0.01, latency: 0}",
+)
+START = "robot.start=[2, -1, 0.3]"
+IDEAL = ("plant={kind: kinematic, beacons: [{at: [3, 0]}]}",)
+LOOPS = get_args(get_args(NodeSpec.model_fields["loop"].annotation)[0])
 
 
 def metrics(tmp_path: Path, *settings: str) -> dict[str, float]:
@@ -30,23 +37,74 @@ def metrics(tmp_path: Path, *settings: str) -> dict[str, float]:
 
 @pytest.mark.parametrize("loop", LOOPS)
 @pytest.mark.parametrize("pan", kinds(AnyPan))
-@pytest.mark.parametrize("reference", kinds(ReferenceSpec))
-@pytest.mark.parametrize("controller", CONTROLLERS)
-@pytest.mark.parametrize("estimator", ESTIMATORS)
-def test_it_runs(
-    tmp_path: Path, estimator: str, controller: str, reference: str, pan: str, loop: str
-) -> None:
-    block = json.dumps({"kind": reference, "speed": 0.4, "acceleration": 1.0, **BLOCKS.get(reference, {})})
+def test_every_loop_runs_with_every_pan_axis(tmp_path: Path, pan: str, loop: str) -> None:
     found = metrics(
         tmp_path,
-        f"estimator={estimator}",
-        f"controller={controller}",
-        f"reference={block}",
         f"sensors.camera.pan={{kind: {pan}}}",
         f"nodes={{left: {{kind: simulated, loop: {loop}}}, right: {{kind: simulated, loop: {loop}}}}}",
     )
     assert found["estimate_position_rms"] < 0.02
     assert found["reference_distance_rms"] < 0.05
+
+
+@pytest.mark.parametrize("reference", set(kinds(ReferenceSpec)) - {"point", "legs"})
+@pytest.mark.parametrize("controller", ["lqr", "open_loop", "lyapunov", "front_point"])
+def test_every_tracker_follows_every_reference(tmp_path: Path, controller: str, reference: str) -> None:
+    block = json.dumps({"kind": reference, "speed": 0.4, "acceleration": 1.0, **BLOCKS.get(reference, {})})
+    found = metrics(tmp_path, f"controller={controller}", f"reference={block}")
+    assert found["reference_distance_rms"] < 0.05
+
+
+@pytest.mark.parametrize("estimator", ESTIMATORS)
+def test_every_estimator_runs_on_the_bench(tmp_path: Path, estimator: str) -> None:
+    metrics(tmp_path, *SIGHTS, "plant.beacons=[{at: [0, 0]}, {at: [0, 3], colour: blue}]", START,
+            f"estimator={estimator}")  # fmt: skip
+
+
+@pytest.mark.parametrize("robot", ["diffdrive", "tricycle"])
+@pytest.mark.parametrize("controller", CONTROLLERS)
+@pytest.mark.parametrize("estimator", ESTIMATORS)
+def test_every_estimator_with_every_controller_on_both_ideal_robots(
+    tmp_path: Path, estimator: str, controller: str, robot: str
+) -> None:
+    settings = [
+        "plant={kind: kinematic, beacons: [{at: [0, 0]}, {at: [0, 3], colour: blue}]}",
+        *SIGHTS,
+        f"robot={{kind: {robot}, start: [2, -1, 0.3]}}",
+        f"estimator={estimator}",
+        f"controller={controller}",
+    ]
+    if controller == "cloud":
+        settings.append("reference={kind: point, pose: [3, 0, 1]}")
+    if (controller, robot) == ("cloud", "tricycle"):
+        with pytest.raises(ScenarioError, match="on the spot, which a tricycle cannot"):
+            metrics(tmp_path, *settings)
+        return
+    metrics(tmp_path, *settings)
+
+
+REFUSED = {
+    ("estimator=particles",): "particles needs readings of position or pose, but camera gives azimuth",
+    ("estimator=bearing_kalman",): "plant.beacons: bearing_kalman needs two, at [0, 0] and at [0, l], l > 0",
+    ("estimator=bearing_survey", "sensors.camera.mount=[0.1, 0, 0.3]"): "bearings from the axle's midpoint",
+    ("controller=cloud",): "cloud drives to a point, line moves",
+    ("reference={kind: point, pose: [1, 0, 0]}",): "a point stands, and lqr follows what moves",
+    (*IDEAL, "disturbances=[{kind: push, start: 0.1, size: [1, 0]}]"): "push cannot befall an ideal robot",
+    (*IDEAL, "nodes={left: simulated}"): "an ideal robot has no drives on a bus",
+    (*IDEAL, "bus.interface=virtual"): "an ideal robot has no bus",
+    (*IDEAL, "controller=null"): "controller is missing",
+    (*IDEAL, "robot={kind: tricycle, max_steering: 1.6}"): "max_steering",
+}
+
+
+@pytest.mark.parametrize("settings", REFUSED, ids=" ".join)
+def test_what_cannot_go_together_is_refused_with_its_place_and_reason(
+    tmp_path: Path, settings: tuple[str, ...]
+) -> None:
+    with pytest.raises(ScenarioError) as refused:
+        metrics(tmp_path, *settings)
+    assert REFUSED[settings] in str(refused.value)
+    assert "small.yaml:" in str(refused.value) or "--set " in str(refused.value)
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,13 @@ from typing import Any, get_args
 import pytest
 
 from hilbed.build.minds import CONTROLLERS, ESTIMATORS
+from hilbed.build.senses import SENSORS
 from hilbed.control import ControllerSpec
 from hilbed.disturbances import DISTURBANCES, DisturbanceSpec
 from hilbed.estimation import EstimatorSpec
 from hilbed.plant import PlantSpec
 from hilbed.robots import ROBOTS, RobotSpec
+from hilbed.sensors import SensorSpec
 
 
 def kinds(union: Any) -> list[str]:
@@ -28,7 +30,8 @@ def kinds(union: Any) -> list[str]:
         (DisturbanceSpec, DISTURBANCES),
         (EstimatorSpec, ESTIMATORS),
         (ControllerSpec, CONTROLLERS),
-        (PlantSpec, {"bullet": None, "recorded": None}),
+        (SensorSpec, SENSORS),
+        (PlantSpec, dict.fromkeys(("bullet", "kinematic", "recorded"))),
     ],
 )
 def test_every_kind_has_a_row_and_every_row_a_kind(union: Any, table: Mapping[str, Any]) -> None:

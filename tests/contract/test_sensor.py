@@ -18,6 +18,7 @@ from hilbed.types import Nanos, Pose, Reading, Truth
 from tests.recorded.files import write
 from tests.recorded.test_replay import Notes
 from tests.sensors.cameras import Bench
+from tests.sensors.direct import Rig
 
 MS: Nanos = 1_000_000
 END = 1500 * MS
@@ -26,6 +27,10 @@ Make = Callable[[Path], Sensor]
 
 def camera(**block: object) -> Make:
     return lambda _: Bench({"kind": "camera", **block}).camera
+
+
+def direct(**block: object) -> Make:
+    return lambda _: Rig(block).sensor
 
 
 def recorded(kind: str) -> Make:
@@ -41,6 +46,12 @@ SENSORS: dict[str, Make] = {
     "camera, late and lossy": camera(latency=0.25, loss=0.4, rate=13.0, noise=0.01, missed=0.2),
     "camera, at once": camera(latency=0.0, rate=100.0, pan={"kind": "scanning", "rate": 2.0}),
     "camera, false": camera(spurious=2.0, pan={"kind": "tracking"}),
+    "position": direct(kind="position"),
+    "position, hidden at times": direct(kind="position", rate=50.0, front=0.1, dropouts=1.0, loss=0.1),
+    "pose, late": direct(kind="position", yaw_noise=0.02, latency=0.21, rate=17.0),
+    "bearing": direct(kind="bearing"),
+    "bearing, at once": direct(kind="bearing", noise=0.01, latency=0.0, max_range=3.0, rate=40.0),
+    "range and bearing": direct(kind="range_bearing"),
     "recorded azimuth": recorded("azimuth"),
     "recorded range": recorded("range"),
 }
@@ -84,5 +95,5 @@ def test_a_reading_is_whole(tmp_path: Path, name: str) -> None:
     for reading in readings:
         assert len(reading.value) == len(reading.std)
         assert all(std > 0.0 for std in reading.std)
-        assert reading.kind in ("azimuth", "range", "position")
+        assert reading.kind in ("azimuth", "range", "position", "pose", "front")
         assert reading.kind != "azimuth" or -3.15 < reading.value[0] < 3.15

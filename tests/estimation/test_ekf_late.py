@@ -82,7 +82,7 @@ def test_output_is_carried_from_the_odometry_stamp_to_now() -> None:
     assert estimate.t == 40_000_000
     yaw = START.yaw + 0.004
     expected = (START.x + 0.02 * np.cos(yaw), START.y + 0.02 * np.sin(yaw), START.yaw + 0.008)
-    assert estimate.mean == pytest.approx(expected)
+    assert estimate.mean == pytest.approx(expected, rel=1e-5)  # the chord is that much shorter than the arc
     assert estimate.covariance[2, 2] == pytest.approx(1e-4 + 0.04 * 0.02 + 0.0025 * 0.008)
     again = ekf.step(40_000_000, Odometry(0, 0.0, 0.0, 0.0, 0.0), [])
     assert again.mean == pytest.approx(START), "the extrapolation must not be kept"

@@ -10,7 +10,7 @@ from hilbed.estimation.measurement import MODELS
 from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.estimation.specs import EkfSpec, OdometrySpec
 from hilbed.types import Array, Odometry, Pose
-from tests.estimation.experiment import BEACONS, START, Errors, Step, experiment, sight
+from tests.estimation.experiment import BEACONS, START, Errors, Step, exact_arc, experiment, sight
 
 MODEL = OdometryModel()
 MOUNT = (0.1, -0.05)
@@ -37,15 +37,22 @@ def numeric_gradient(kind: str, x: Array, beacon: tuple[float, float]) -> Array:
 def textbook_motion(yaw: float, odometry: Odometry) -> tuple[Array, Array, Array]:
     """Returns the change of state, its Jacobian and its noise covariance."""
     ds, turn = odometry.distance, odometry.turn
-    a = yaw + turn / 2
+
+    def change(ds: float, turn: float) -> Array:
+        x, y, _ = exact_arc(Pose(0.0, 0.0, yaw), ds, turn, 0.0)
+        return np.array((x, y, turn))
+
+    h = 1e-6
+    by_ds, by_turn = change(ds + h, turn) - change(ds - h, turn), change(ds, turn + h) - change(ds, turn - h)
+    G = np.column_stack((by_ds, by_turn)) / (2 * h)
+    dx, dy, _ = change(ds, turn)
     F = np.eye(3)
-    F[:2, 2] = -ds * np.sin(a), ds * np.cos(a)
-    G = np.array([[np.cos(a), F[0, 2] / 2], [np.sin(a), F[1, 2] / 2], [0, 1]])
+    F[:2, 2] = -dy, dx
     variances = (
         MODEL.distance_noise**2 * ds,
         MODEL.heading_noise**2 * ds + MODEL.turn_noise**2 * abs(turn),
     )
-    return np.array((ds * np.cos(a), ds * np.sin(a), turn)), F, G @ np.diag(variances) @ G.T
+    return change(ds, turn), F, G @ np.diag(variances) @ G.T
 
 
 def run_numpy(steps: list[Step]) -> tuple[Array, Array]:

@@ -292,4 +292,5 @@ def test_the_library_walks_the_state_machine() -> None:
             wire.run(1)
     assert node.is_op_mode_supported("PROFILED VELOCITY")
     assert node.is_op_mode_supported("CYCLIC SYNCHRONOUS VELOCITY")
-    assert not node.is_op_mode_supported("CYCLIC SYNCHRONOUS POSITION")
+    assert node.is_op_mode_supported("CYCLIC SYNCHRONOUS POSITION")
+    assert not node.is_op_mode_supported("CYCLIC SYNCHRONOUS TORQUE")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 WHOLE = ("axis.py", "cia402.py", "sdo.py")
 TESTS = (
-    "test_cia402.py", "test_limits.py", "test_modes.py", "test_nmt.py", "test_sdo.py",
+    "test_cia402.py", "test_limits.py", "test_modes.py", "test_nmt.py", "test_position.py", "test_sdo.py",
     "test_state_machine.py::test_the_axis_does_what_the_profile_says",
 )  # fmt: skip
 

@@ -37,6 +37,14 @@ def test_a_small_change_of_any_part_is_noticed(setting: str, first: str) -> None
     assert any(change.name.startswith(first) for change in changes), changes
 
 
-def test_every_bundled_scenario_has_a_record_and_every_record_a_scenario() -> None:
-    assert set(SETTINGS) == set(bundled.names())
+PAPERS = (
+    "ishikawa1994/",
+    "bui2022/",
+    "lages2017/",
+    "pliego2023/",
+)  # held by tests/papers, beside the equations
+
+
+def test_every_other_bundled_scenario_has_a_record_and_every_record_a_scenario() -> None:
+    assert set(SETTINGS) == {name for name in bundled.names() if not name.startswith(PAPERS)}
     assert {file.name for file in FOLDER.iterdir()} == {path(name).name for name in SETTINGS}

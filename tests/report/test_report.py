@@ -221,3 +221,23 @@ def test_identifiers_are_named_as_canopen_does(identifier: int, name: str) -> No
     from hilbed.report.bus_table import name_of
 
     assert name_of(identifier) == name
+
+
+def test_positions_and_counters_are_shown_where_there_are_any(run: Path, tmp_path: Path) -> None:
+    folder = synthetic.write(tmp_path / "positions")
+    with np.load(folder / "signals.npz") as archive:
+        signals = dict(archive)
+    for kind, size in (("pose", 3), ("front", 2)):
+        true = signals["truth"][::10, :size]
+        measured = true + 0.01
+        measured[3] = np.nan
+        signals |= {f"{kind}/t": signals["t"][::10], f"{kind}/true": true, f"{kind}/measured": measured}
+    np.savez(folder / "signals.npz", **signals)
+    verdict = json.loads((folder / "verdict.json").read_text())
+    verdict["counts"] = {"estimator": {"ignored": 17, "effective": None}, "controller": {}}
+    (folder / "verdict.json").write_text(json.dumps(verdict))
+    page, before = page_of(folder), page_of(run)
+    assert set(page.titles) - set(before.titles) == {"Position residuals", "Counted"}
+    assert set(page.figures) - set(before.figures) == {"position residuals"}
+    assert "17" in page.words
+    assert {"ignored", "effective"} <= set(page.words)

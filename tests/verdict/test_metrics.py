@@ -185,9 +185,20 @@ def test_every_metric_is_described_and_comes_out_of_a_full_run() -> None:
     found = all_metrics(run)
     missing = [name for name in METRICS if name not in found and f"left.{name}" not in found]
     simulated = ["missed_deadlines", "lateness_p99", "lateness_max"]
-    assert missing == ["range_bias", "range_std", *simulated]
+    sensed = ["range_bias", "range_std", "position_count", "position_rms"]
+    assert missing == ["landmark_distance_error_max", *sensed, *simulated]
     assert all(np.isfinite(value) for value in found.values())
     assert all(metric.about.endswith(".") for metric in METRICS.values())
+
+
+@pytest.mark.parametrize("kind", ["position", "pose"])
+def test_measured_positions_are_compared_with_true_ones(kind: str) -> None:
+    true = np.zeros((4, 3 if kind == "pose" else 2))
+    measured = true.copy()
+    measured[0, :2], measured[1, :2], measured[2, :2] = (0.3, 0.4), (0.0, -0.1), (np.nan, np.nan)
+    run = Signals({f"{kind}/t": np.arange(4.0), f"{kind}/true": true, f"{kind}/measured": measured})
+    assert measure(run, "position_count") == 4
+    assert measure(run, "position_rms") == pytest.approx(np.sqrt((0.25 + 0.01) / 3))
 
 
 def test_a_run_that_never_began_gives_no_number_and_no_error() -> None:

@@ -138,3 +138,14 @@ def test_a_window_after_the_end_is_told() -> None:
     (judged,) = judge(SIGNALS, {"late": late}).values()
     assert not judged.passed
     assert judged.reason == "the run has no rows from 1e+06 to 2e+06 s"
+
+
+def test_the_table_tells_what_was_counted_but_not_that_nothing_was() -> None:
+    counts = {"estimator": {"ignored": 3, "recovered": 0, "effective": None}, "controller": {"beyond": 0}}
+    content = conclude(account()._replace(parts={"counts": counts}), SIGNALS, {})
+    assert content["counts"] == counts
+    assert "estimator: ignored 3" in table(content).splitlines()
+    assert "controller" not in table(content)
+    nothing = {"estimator": {"ignored": 0}, "controller": {}}
+    plain = conclude(account()._replace(parts={"counts": nothing}), SIGNALS, {})
+    assert table(plain) == table(concluded())
