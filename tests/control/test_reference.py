@@ -10,7 +10,14 @@ from hypothesis import strategies as st
 from pydantic import TypeAdapter, ValidationError
 
 from hilbed.angles import wrap
-from hilbed.control.reference import PathReference, ReferenceSpec, WaypointsSpec
+from hilbed.control.reference import (
+    CircleSpec,
+    FigureEightSpec,
+    LineSpec,
+    PathReference,
+    StadiumSpec,
+    WaypointsSpec,
+)
 from hilbed.control.timetable import Timetable
 
 PATHS = {
@@ -23,7 +30,8 @@ PATHS = {
     "loop": {"kind": "waypoints", "points": [(0, 0), (3, 0), (3, 2), (-1, 3)], "closed": True},
 }
 CLOSED = ["circle", "clockwise", "stadium", "eight", "loop"]
-SPEC: TypeAdapter[ReferenceSpec] = TypeAdapter(ReferenceSpec)
+PathSpec = LineSpec | CircleSpec | StadiumSpec | FigureEightSpec | WaypointsSpec
+SPEC: TypeAdapter[PathSpec] = TypeAdapter(PathSpec)
 
 
 def build(name: str, **changes: object) -> PathReference:

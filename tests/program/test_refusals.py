@@ -59,7 +59,7 @@ def test_the_good_one_is_good(tmp_path: Path) -> None:
         (
             "kind: bullet",
             "kind: mujoco",
-            "mine.yaml:5: plant: unknown kind 'mujoco'; known: bullet, recorded",
+            "mine.yaml:5: plant: unknown kind 'mujoco'; known: bullet, kinematic, recorded",
         ),
         (
             "{at: [3, 1]}",
