@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hilbed.clock import MILLISECOND
+from hilbed.record.clouds import Clouds
 from hilbed.record.rounds import first_rounds
 from hilbed.record.row import WIDTH, Batch, Row, Witnessed
 from hilbed.types import Array, DriveSignals, Innovation, Nanos, Reading, Transfer
@@ -47,6 +48,7 @@ class Columns:
         self._waiting: list[Witnessed] = []
         self._innovations = array("d")
         self._bus = array("q")
+        self._clouds = Clouds()
 
     def take(self, batch: Batch) -> None:
         if batch.transfers:
@@ -66,6 +68,7 @@ class Columns:
             self._drive_rows.extend(odometry.drives.get(drive, _UNKNOWN))
         for innovation in estimate.innovations:
             self._note_innovation(innovation)
+        self._clouds.note(t, estimate.cloud)
 
     def _note_innovation(self, innovation: Innovation) -> None:
         t, nis, dof, accepted = innovation
@@ -86,7 +89,7 @@ class Columns:
         """
         signals = _poses(np.array(self._rows).reshape(-1, 1 + WIDTH))
         t = signals["t"]
-        signals |= self._measured(len(t))
+        signals |= self._measured(len(t)) | self._clouds.columns()
         signals |= _plant(t, ticks or {}, tick * _NS)
         signals |= self._read(t[-1] if len(t) else -np.inf)
         if self._innovations or self._readings:
