@@ -37,15 +37,15 @@ class Effects:
     load_torque: N m at each drive, positive against forward rotation; friction: coefficient under each
     wheel, those without a drive last; radius: factor on each drive's rolling radius; push: force (N, N) in
     the map on the body's centre of mass and torque (N m) about z; supply_drop: V off the supply's
-    open-circuit voltage;
+    open-circuit voltage; command: added to the controller's (m/s, and rad/s, or rad of steering);
     spurious: mean number of false azimuths a frame; blind: the camera delivers nothing; lost, broken: names
     of sensors that deliver nothing, or NaN; frames, babble: what happens on the bus; bus_off, unpowered:
     names of nodes whose CAN controller, or whose logic, is off.
     """
 
     __slots__ = (
-        "_drives", "_friction", "babble", "blind", "broken", "bus_off", "frames", "friction", "load_torque",
-        "lost", "push", "radius", "spurious", "supply_drop", "unpowered",
+        "_drives", "_friction", "babble", "blind", "broken", "bus_off", "command", "frames", "friction",
+        "load_torque", "lost", "push", "radius", "spurious", "supply_drop", "unpowered",
     )  # fmt: skip
 
     def __init__(self, friction: Sequence[float], drives: int | None = None) -> None:
@@ -70,6 +70,7 @@ class Effects:
         self.radius[:] = [1.0] * self._drives
         self.push: tuple[float, float, float] = (0.0, 0.0, 0.0)
         self.supply_drop = 0.0
+        self.command: tuple[float, float] = (0.0, 0.0)
         self.spurious = 0.0
         self.blind = False
         for knob in (self.frames, self.babble, self.lost, self.broken, self.bus_off, self.unpowered):

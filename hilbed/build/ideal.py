@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import ExitStack
-from math import nan
 
 import numpy as np
 
@@ -13,7 +11,7 @@ from hilbed.build.bench import Bench
 from hilbed.build.known import start_of, surroundings
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.senses import Scene, kinds_of, make_sensors
-from hilbed.build.upsets import schedule_of
+from hilbed.build.upsets import Nowhere, schedule_of
 from hilbed.clock import nanos
 from hilbed.cost import Cost
 from hilbed.effects import Effects
@@ -57,13 +55,6 @@ def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: P
         rig, told, reference, (), kinds_of(scenario), tuple(spec.beacons),
         boot=lambda _: plant.start(), close=close, pace=pace,
     )  # fmt: skip
-
-
-class Nowhere:
-    """The surroundings of disturbances that only know the time."""
-
-    pose = Pose(nan, nan, nan)
-    wheels: Sequence[tuple[float, float]] = ()
 
 
 def _told(start: Pose, spec: KinematicSpec, seed: int) -> Pose:

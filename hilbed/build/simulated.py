@@ -16,7 +16,7 @@ from hilbed.build.hands import Hands
 from hilbed.build.known import boot_of, nodes_of, start_of, surroundings
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.senses import Scene, kinds_of, make_sensors
-from hilbed.build.upsets import schedule_of
+from hilbed.build.upsets import effects_of, schedule_of
 from hilbed.can.base import CanBase
 from hilbed.can.faults import Faults
 from hilbed.can.master import Master
@@ -24,6 +24,7 @@ from hilbed.can.traffic import CONTROLLER
 from hilbed.can.wire import Wire
 from hilbed.clock import nanos
 from hilbed.cost import Cost
+from hilbed.disturbances.commands import DisturbedBase
 from hilbed.effects import Effects
 from hilbed.loop import Rig
 from hilbed.pacer import Pacer
@@ -97,7 +98,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     plant = SimulatedPlant(axes, world, supply, schedule, carriage.medium, sensors, tick, cost, collect)
     base = CanBase(Limited(robot, [node.max_speed for node in nodes]), port, nodes, scenario.bus)
     rig = Rig(
-        base,
+        DisturbedBase(base, robot.limited, effects_of(schedule, world)),
         sensors,
         make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
         make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),

@@ -7,6 +7,7 @@ from typing import Any
 
 from hilbed.disturbances.bodies import Push, SlipPatch, WheelRadius, push, slip_patch, wheel_radius
 from hilbed.disturbances.bus import BusFault, babbling_node, bus_off, frame_fault, lost_heartbeat, node_reset
+from hilbed.disturbances.commands import CommandNoise, command_noise
 from hilbed.disturbances.drives import LoadTorque, SupplySag, load_torque, supply_sag
 from hilbed.disturbances.schedule import Disturbance, Schedule
 from hilbed.disturbances.sensors import SensorLoss, SensorNan, sensor_loss, sensor_nan
@@ -19,6 +20,7 @@ DISTURBANCES: dict[str, Callable[[Any, int, Rng], Disturbance]] = {
     "wheel_radius": wheel_radius,
     "push": push,
     "supply_sag": supply_sag,
+    "command_noise": command_noise,
     "spurious_azimuths": spurious_azimuths,
     "camera_loss": camera_loss,
     "sensor_loss": sensor_loss,
@@ -35,7 +37,7 @@ DISTURBANCES: dict[str, Callable[[Any, int, Rng], Disturbance]] = {
 
 DisturbanceSpec = (
     LoadTorque | SlipPatch | WheelRadius | Push | SupplySag
-    | SpuriousAzimuths | CameraLoss | SensorLoss | SensorNan | BusFault
+    | CommandNoise | SpuriousAzimuths | CameraLoss | SensorLoss | SensorNan | BusFault
 )  # fmt: skip
 
 __all__ = ["DISTURBANCES", "Disturbance", "DisturbanceSpec", "Schedule"]

@@ -8,9 +8,12 @@ from math import nan
 
 from hilbed.build.known import nodes_of, start_of, surroundings
 from hilbed.build.minds import Guidance, make_controller, make_estimator
+from hilbed.build.upsets import Nowhere, effects_of, schedule_of
 from hilbed.can.base import CanBase
 from hilbed.clock import nanos
 from hilbed.cost import Cost
+from hilbed.disturbances.commands import DisturbedBase
+from hilbed.effects import Effects
 from hilbed.loop import Rig
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.ports import Reference
@@ -76,8 +79,10 @@ def rig_of(recording: Recording) -> tuple[Rig, Pose, Reference | None]:
     start, period = start_of(scenario, reference), nanos(scenario.period)
     nodes = nodes_of(scenario, spec, robot.drives)
     sensors = tuple(RecordedSensor(readings(recording.signals, kind)) for kind in kinds(recording.signals))
+    base = CanBase(robot, RecordedBus(recording.frames), nodes, scenario.bus)
+    upsets = schedule_of(scenario, robot.drives, Effects(()), ("command_noise",))  # the rest is in the record
     rig = Rig(
-        CanBase(robot, RecordedBus(recording.frames), nodes, scenario.bus),
+        DisturbedBase(base, robot.limited, effects_of(upsets, Nowhere())),
         sensors,
         make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
         make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),

@@ -73,12 +73,25 @@ def camera_loss(calm: Signals, hit: Signals) -> None:
     assert exposed[1] < exposed[0]
 
 
+def command_noise(calm: Signals, hit: Signals) -> None:
+    """The drives are asked for something else than the controller asked for: both wheels, for a turn."""
+    assert np.array_equal(hit["command"], calm["command"])
+    left, right = (
+        after(hit, f"drive/{side}/speed_ref") - after(calm, f"drive/{side}/speed_ref")
+        for side in ("left", "right")
+    )
+    assert left == pytest.approx(-right, abs=2e-4)  # what a target on the bus resolves
+    assert np.abs(right).max() > 0.1
+    assert after(hit, "truth")[-1, 2] != pytest.approx(after(calm, "truth")[-1, 2], abs=1e-3)
+
+
 EFFECTS = {
     "load_torque": ("drive: left, size: 2", load_torque),
     "slip_patch": ("corner: [-9, -9], opposite: [9, 9], friction: 0.01", slip_patch),
     "wheel_radius": ("drive: left, size: 1.1", wheel_radius),
     "push": ("size: [0, 150], length: 0.2", push),
     "supply_sag": ("size: 12", supply_sag),
+    "command_noise": ("size: [0, 0.2], hold: 0.1", command_noise),
     "spurious_azimuths": ("size: 3", spurious_azimuths),
     "camera_loss": ("length: 0.2", camera_loss),
 }

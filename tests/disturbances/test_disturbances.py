@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 from hilbed.clock import nanos
 from hilbed.disturbances import DISTURBANCES, DisturbanceSpec
 from hilbed.disturbances.bodies import FASTEST, Push, SlipPatch, WheelRadius
+from hilbed.disturbances.commands import CommandNoise, DisturbedBase
 from hilbed.disturbances.drives import IMPULSE_LENGTH, LoadTorque, SupplySag
 from hilbed.disturbances.schedule import Schedule
 from hilbed.disturbances.vision import CameraLoss, SpuriousAzimuths
 from hilbed.effects import Effects
-from hilbed.types import Pose
+from hilbed.types import Command, Nanos, Odometry, Pose
 
 DRIVES = ("left", "right")
 
@@ -41,6 +42,7 @@ def state(effects: Effects) -> tuple[object, ...]:
     e = effects
     return (
         tuple(e.load_torque), tuple(e.friction), tuple(e.radius), e.push, e.supply_drop, e.spurious, e.blind,
+        e.command,
     )  # fmt: skip
 
 
@@ -125,3 +127,57 @@ def test_a_spread_is_drawn_once_a_run_from_the_seed() -> None:
         sizes.append(plan.effects.radius[0])
     assert sizes[0] == sizes[1] != sizes[2]
     assert abs(sizes[0] - 1.0) < 0.05
+
+
+NOISE = CommandNoise(start=1, length=100, size=(0.02, 0.3), hold=0.1)
+
+
+def noise(spec: CommandNoise, step: float, seed: int = 0) -> np.ndarray:
+    """What is added to the command (N, 2), asked every `step` s from the start to the end."""
+    plan, seen = schedule(spec, seed=seed), []
+    for t in range(nanos(spec.start), nanos(spec.start + (spec.length or 0.0)), nanos(step)):
+        plan.apply(t, Place())
+        seen.append(plan.effects.command)
+    return np.array(seen)
+
+
+def test_noise_on_the_command_is_held_and_has_its_spread() -> None:
+    """0.3 rad on the steering angle, a draw for each 0.1 s: variance 0.09 rad², Bui & Duong (2022)."""
+    seen = noise(NOISE, 0.01).reshape(1000, 10, 2)
+    assert (seen == seen[:, :1]).all()
+    draws = seen[:, 0]
+    assert len(np.unique(draws[:, 1])) == 1000
+    assert draws.std(axis=0) == pytest.approx((0.02, 0.3), rel=0.08)  # 3.5 σ of a standard deviation of 1000
+    assert abs(draws.mean(axis=0) / (0.02, 0.3)).max() < 0.11
+    assert abs(np.corrcoef(draws[1:, 1], draws[:-1, 1])[0, 1]) < 0.11
+
+
+def test_noise_on_the_command_is_the_seeds_however_often_it_is_asked() -> None:
+    assert np.array_equal(noise(NOISE, 0.1), noise(NOISE, 0.02)[::5])
+    assert not np.array_equal(noise(NOISE, 0.1), noise(NOISE, 0.1, seed=1))
+
+
+class Told:
+    """A base that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.commands: list[Command] = []
+
+    def read(self, t: Nanos) -> Odometry:
+        return Odometry(t, 0.0, 0.0, 0.0, 0.0)
+
+    def write(self, t: Nanos, command: Command) -> None:  # noqa: ARG002
+        self.commands.append(command)
+
+
+def test_a_disturbed_command_keeps_to_the_robots_limits() -> None:
+    """First without noise, when what the controller asks for is nobody's affair; then added, then limited."""
+    told, effects = Told(), Effects(())
+    base = DisturbedBase(told, lambda c: Command(min(c.v, 1.0), min(c.w, 0.5)), lambda _: effects)
+    base.write(0, Command(3.0, 0.6))
+    effects.command = (0.1, -0.2)
+    base.write(1, Command(0.5, 0.3))
+    effects.command = (0.1, 0.3)
+    base.write(2, Command(0.5, 0.3))
+    assert told.commands == [(3.0, 0.6), pytest.approx((0.6, 0.1)), (0.6, 0.5)]
+    assert base.read(7).t == 7

@@ -31,6 +31,10 @@ from tests.replay.runs import recorded
         ("bus.bitrate=800000",),  # whose bits are no whole microseconds
         ("bus.bitrate=250000", "controller=open_loop", "estimator=odometry"),
         ("sensors.camera.identity=anonymous", "sensors.camera.noise=0.002", "sensors.camera.loss=0.2"),
+        (
+            "disturbances=[{kind: slip_patch, corner: [0, -1], opposite: [1, 1], friction: 0.1}, "
+            "{kind: command_noise, start: 0.3, size: [0.05, 0.2]}]",
+        ),
     ],
 )
 def test_an_unchanged_program_gives_the_same_to_the_bit(settings: tuple[str, ...]) -> None:
