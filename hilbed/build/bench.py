@@ -21,13 +21,14 @@ BOOT: Nanos = SECOND
 class Bench:
     """A rig, ready to boot.
 
-    start: pose at t = 0; kinds: what its sensors measure, with the number of components; boot: brings the
-    drives up, ends at t = 0, or where its argument, called at every step, raises; stop: brings them to rest
-    from the time given; ticks: the plant's log from a row on; tick: ns; events: what the drives did that they
-    should not have; close: gives back what it holds; nodes: the drives on the bus; power_on: how long before
-    t = 0 they are powered, time stamps in can.log and log.mcap are t plus this; pace: waits for a cycle's
-    beginning, returns whether its commands may still be sent; late: answers of each drive that did not come
-    within their cycle; account: what verdict.json says of the bus besides.
+    start: pose at t = 0, as the estimator is told it; kinds: what its sensors measure, with the number of
+    components; boot: brings the drives up, ends at t = 0, or where its argument, called at every step,
+    raises; stop: brings them to rest from the time given; ticks: the plant's log from a row on; tick: ns;
+    events: what the drives did that they should not have; close: gives back what it holds; nodes: the drives
+    on the bus; power_on: how long before t = 0 they are powered, time stamps in can.log and log.mcap are t
+    plus this; pace: waits for a cycle's beginning, returns whether its commands may still be sent; late:
+    answers of each drive that did not come within their cycle; account: what verdict.json says of the bus
+    besides.
     """
 
     rig: Rig

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 
-import numpy as np
-
 from hilbed import rng
 from hilbed.build.bench import Bench
-from hilbed.build.known import start_of, surroundings
+from hilbed.build.known import start_of, surroundings, told_of
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.senses import Scene, kinds_of, make_sensors
 from hilbed.build.upsets import Nowhere, schedule_of
@@ -22,7 +20,6 @@ from hilbed.plant.kinematic_spec import KinematicSpec, make_vehicle
 from hilbed.ports import Witness
 from hilbed.robots import ROBOTS
 from hilbed.scenario.load import Loaded
-from hilbed.types import Pose
 
 
 def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: Pacer | None) -> Bench:
@@ -40,7 +37,7 @@ def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: P
         sensors = make_sensors(scenario, scene, closing)
         close = closing.pop_all().close
     plant = KinematicPlant(start, vehicle, sensors, lambda t: schedule.apply(t, Nowhere()))
-    told = _told(start, spec, scenario.seed)
+    told = told_of(scenario, start)
     rig = Rig(
         IdealBase(plant, vehicle),
         sensors,
@@ -55,8 +52,3 @@ def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: P
         rig, told, reference, (), kinds_of(scenario), tuple(spec.beacons),
         boot=lambda _: plant.start(), close=close, pace=pace,
     )  # fmt: skip
-
-
-def _told(start: Pose, spec: KinematicSpec, seed: int) -> Pose:
-    """Returns where the estimator is told that the robot starts."""
-    return Pose(*(np.array(start) + rng.stream(seed, "plant.start").normal(0.0, spec.start_std)).tolist())

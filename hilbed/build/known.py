@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from hilbed import rng
 from hilbed.build.bench import BOOT
 from hilbed.build.minds import ESTIMATOR_STREAM, Surroundings
@@ -31,6 +33,12 @@ def start_of(scenario: Scenario, reference: Reference | None) -> Pose:
     if scenario.robot.start is not None:
         return Pose(*scenario.robot.start)
     return Pose(0.0, 0.0, 0.0) if reference is None else reference.at(0).pose
+
+
+def told_of(scenario: Scenario, start: Pose) -> Pose:
+    """Returns where the estimator is told that the robot stands at t = 0."""
+    std = getattr(scenario.plant, "start_std", (0.0, 0.0, 0.0))
+    return Pose(*(np.array(start) + rng.stream(scenario.seed, "plant.start").normal(0.0, std)).tolist())
 
 
 def boot_of(scenario: Scenario) -> Nanos:

@@ -13,7 +13,7 @@ from hilbed.build.axes import Workshop
 from hilbed.build.bench import Bench
 from hilbed.build.carriage import join
 from hilbed.build.hands import Hands
-from hilbed.build.known import boot_of, nodes_of, start_of, surroundings
+from hilbed.build.known import boot_of, nodes_of, start_of, surroundings, told_of
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.senses import Scene, kinds_of, make_sensors
 from hilbed.build.upsets import effects_of, schedule_of
@@ -75,6 +75,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     robot = ROBOTS[scenario.robot.kind](scenario.robot)
     reference = None if scenario.reference is None else scenario.reference.build()
     start, period, tick = start_of(scenario, reference), nanos(scenario.period), nanos(spec.tick)
+    told = told_of(scenario, start)
     nodes = nodes_of(scenario, spec, robot.drives)
 
     body = body_of(scenario.robot, files.resolve(scenario.robot.urdf, loaded.folder))
@@ -100,7 +101,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     rig = Rig(
         DisturbedBase(base, robot.limited, effects_of(schedule, world)),
         sensors,
-        make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
+        make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, told)),
         make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
         plant,
         period,
@@ -112,7 +113,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     master, power_on = Master(nodes, port, period), boot_of(scenario)
     hands = Hands(master, base, plant, carriage, flush, tick, period, wake, faults, power_on)
     return Bench(
-        rig, start, reference, robot.drives, kinds_of(scenario), tuple(spec.beacons), tick,
+        rig, told, reference, robot.drives, kinds_of(scenario), tuple(spec.beacons), tick,
         hands.boot, hands.stop, plant.ticks, hands.events, closing.close, nodes,
         carriage.due, lambda: elsewhere.late(base.late, terminals),
         lambda: {"nodes": {node.name: node.kind for node in nodes}, **carriage.account()}, power_on,

@@ -11,13 +11,17 @@ from hilbed.plant.gear import GEARS, Gear
 from hilbed.plant.motor import MOTORS, Motor
 from hilbed.plant.supply import SupplySpec
 from hilbed.scene import BeaconSpec
+from hilbed.spec import Listed, NonNegative
 
 FIRMWARE_TICK = 0.001
 """s; the control period that the loops in the drives' firmware are written for."""
 
 
 class SimulatedSpec(BulletSpec):
-    """A PyBullet world with beacons, and one motor, gear, chopper and encoder for each driven wheel."""
+    """A PyBullet world with beacons, and one motor, gear, chopper and encoder for each driven wheel.
+
+    start_std (m, m, rad): how wrong the estimator is told the start, standard deviations, drawn once.
+    """
 
     motor: Motor = MOTORS["re35"]
     gear: Gear = GEARS["gp32c-33"]
@@ -25,6 +29,7 @@ class SimulatedSpec(BulletSpec):
     encoder: EncoderSpec = EncoderSpec()
     supply: SupplySpec = SupplySpec()
     beacons: list[BeaconSpec] = []
+    start_std: Listed[tuple[NonNegative, NonNegative, NonNegative]] = (0.0, 0.0, 0.0)
 
     @field_validator("tick")
     @classmethod

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterable
 from math import nan
 
-from hilbed.build.known import nodes_of, start_of, surroundings
+from hilbed.build.known import nodes_of, start_of, surroundings, told_of
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.upsets import Nowhere, effects_of, schedule_of
 from hilbed.can.base import CanBase
@@ -76,7 +76,7 @@ def rig_of(recording: Recording) -> tuple[Rig, Pose, Reference | None]:
         raise ScenarioError(f"a run of plant {spec.kind} has no drives on a bus to be replayed")
     robot = ROBOTS[scenario.robot.kind](scenario.robot)
     reference = None if scenario.reference is None else scenario.reference.build()
-    start, period = start_of(scenario, reference), nanos(scenario.period)
+    start, period = told_of(scenario, start_of(scenario, reference)), nanos(scenario.period)
     nodes = nodes_of(scenario, spec, robot.drives)
     sensors = tuple(RecordedSensor(readings(recording.signals, kind)) for kind in kinds(recording.signals))
     base = CanBase(robot, RecordedBus(recording.frames), nodes, scenario.bus)
