@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from hilbed import __version__
+from hilbed.busoptions import add_bus
 from hilbed.drive.arguments import add_options as add_drive_options
 
 # Nothing else of the bench is imported up here: what takes time happens where an interrupt is waited for.
@@ -93,7 +94,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--record", choices=("all", "signals", "none"), help="what is written (all)")
     run.add_argument("--arm", action="store_true", help="let real drives (nodes of kind real) turn")
     run.add_argument("--realtime", action="store_true", help="pace the cycles to the wall clock")
-    _add_bus(run)
+    add_bus(run, "left out: the scenario or CAN_INTERFACE says, else all is simulated")
 
     sweep = _command(commands, "sweep", _sweep, "run a scenario over seeds and values, in parallel")
     _add_scenario(sweep)
@@ -148,13 +149,6 @@ def _add_settings(parser: _Parser) -> None:
         "--set", action="append", default=[], dest="settings", metavar="PATH=VALUE",
         help="lay one value over the scenario, such as controller=open_loop",
     )  # fmt: skip
-
-
-def _add_bus(parser: _Parser) -> None:
-    text = "of the python-can bus that carries the frames, too"
-    parser.add_argument("-i", "--interface", metavar="IFACE", help=f"interface {text} (virtual, socketcan …)")
-    parser.add_argument("-c", "--channel", metavar="CHANNEL", help=f"channel {text} (vcan0, /dev/ttyACM0 …)")
-    parser.add_argument("-b", "--bitrate", type=int, metavar="BITRATE", help="bit/s (500000)")
 
 
 def _run(options: Options) -> int:

@@ -6,17 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hilbed.busoptions import add_bus
+
 if TYPE_CHECKING:
     from hilbed.bustools.decoder import Decoder
-
-NO_BUS = "left out: CAN_INTERFACE, CAN_CHANNEL, CAN_BITRATE or ~/.canrc say"
-
-
-def add_bus(parser: argparse.ArgumentParser) -> None:
-    """Adds the options that name a python-can bus, as python-can's own programs have them."""
-    parser.add_argument("-i", "--interface", metavar="NAME", help=f"python-can's name of it ({NO_BUS})")
-    parser.add_argument("-c", "--channel", metavar="NAME", help="such as can0, vcan0, /dev/ttyACM0")
-    parser.add_argument("-b", "--bitrate", type=int, metavar="BIT/S", help="of the bus")
 
 
 def add_tools(parser: argparse.ArgumentParser) -> None:

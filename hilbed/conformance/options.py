@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from hilbed.bustools.options import add_bus
+from hilbed.busoptions import add_bus
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from hilbed.busoptions import add_bus
+
 _NUMBERS = (
     ("inertia", "KGM2", 0.05, "kg m² turned by the shaft at the wheel, besides rotor and gear"),
     ("load", "NM", 0.0, "torque at the wheel against forward rotation"),
@@ -15,9 +17,7 @@ _NUMBERS = (
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds what describes the drive and where it is."""
     parser.add_argument("--node", type=int, required=True, metavar="N", help="node number, 1 to 127")
-    parser.add_argument("-i", "--interface", metavar="IFACE", help="python-can interface, such as socketcan")
-    parser.add_argument("-c", "--channel", metavar="CHANNEL", help="its channel, such as vcan0")
-    parser.add_argument("-b", "--bitrate", type=int, metavar="BITRATE", help="bit/s")
+    add_bus(parser)
     parser.add_argument("--motor", default="re35", metavar="NAME", help="from the catalogue (re35)")
     parser.add_argument("--gear", default="gp32c-33", metavar="NAME", help="from the catalogue, or a ratio")
     for name, unit, default, text in _NUMBERS:
