@@ -10,7 +10,7 @@ from hilbed.build.carriage import Carriage
 from hilbed.can.node import Node
 from hilbed.can.specs import TerminalSpec
 from hilbed.can.terminals import Terminals
-from hilbed.can.wake import Wake
+from hilbed.can.wake import Wake, Waker
 from hilbed.scenario.model import Scenario
 from hilbed.types import Nanos, ScenarioError
 
@@ -63,11 +63,9 @@ def terminals_of(
     return terminals
 
 
-def wakers(
-    nodes: Sequence[Node], carriage: Carriage, terminals: Terminals | None
-) -> list[Callable[[Nanos], None]]:
+def wakers(nodes: Sequence[Node], carriage: Carriage, terminals: Terminals | None) -> list[Waker]:
     """Returns what brings up, in the time that it takes there, what is elsewhere."""
-    found: list[Callable[[Nanos], None]] = [] if terminals is None else [terminals.power]
+    found: list[Waker] = [] if terminals is None else [terminals.power]
     real, gateway = [node for node in nodes if node.kind == "real"], carriage.gateway
     if real and gateway is not None:
         wake = Wake(real, gateway.adapter.send, gateway.pull, monotonic)

@@ -12,6 +12,7 @@ from hilbed.can.base import CanBase
 from hilbed.can.ears import BusEvent
 from hilbed.can.faults import Faults
 from hilbed.can.master import Master
+from hilbed.can.wake import Waker
 from hilbed.clock import SECOND, seconds
 from hilbed.types import BusError, Command, Nanos
 
@@ -46,7 +47,7 @@ class Hands:
     flush: Sequence[Callable[[], None]]
     tick: Nanos
     period: Nanos
-    wake: Sequence[Callable[[Nanos], None]] = ()
+    wake: Sequence[Waker] = ()
     faults: Faults | None = None
     power_on: Nanos = BOOT
 
@@ -60,7 +61,7 @@ class Hands:
 
         start = -self.power_on
         for wake in self.wake:
-            wake(start)
+            wake(start, going)
         self.carriage.start(start)
         self.master.boot(pump, start, 0)
         self.plant.start()

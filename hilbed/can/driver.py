@@ -62,6 +62,10 @@ def open_driver(interface: str | None, channel: str | int | None, bitrate: int |
         _check_socketcan(names)
     try:
         return Driver(can.Bus(**_given(interface, channel, bitrate)), names)
+    except TypeError as error:
+        if names.channel is None:  # a driver whose signature wants one
+            raise ScenarioError(f"bus: {names} needs a channel: say which with -c") from None
+        raise ScenarioError(f"bus: {names} cannot be opened: {reason(error)}") from None
     except Exception as error:  # a driver may raise anything
         raise ScenarioError(f"bus: {names} cannot be opened: {reason(error)}") from None
 

@@ -99,10 +99,14 @@ class Terminals:
             one.take(frame.data)
         return True
 
-    def power(self, t: Nanos) -> None:
-        """Switches all firmware on; BusError with those that do not come up."""
+    def power(self, t: Nanos, going: Callable[[], None]) -> None:
+        """Switches all firmware on; BusError with those that do not come up.
+
+        going: asked again and again; raises where that is to end.
+        """
         deadline = self._clock() + PATIENCE
         while missing := [one for one in self.by_node.values() if not one.powered]:
+            going()
             left = deadline - self._clock()
             if left <= 0.0:
                 raise BusError(_dead(missing))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 from hilbed.can import nmt
 from hilbed.can.node import Node
@@ -10,6 +11,11 @@ from hilbed.types import BusError, Frame, Nanos, Received
 
 PATIENCE = 5.0
 """s of the wall clock."""
+REPEAT = 0.2
+"""s of the wall clock; so often somebody is asked whether to go on."""
+
+Waker: TypeAlias = Callable[[Nanos, Callable[[], None]], None]
+"""Brings up, at a time (ns), what is elsewhere; asks its second argument whether to go on."""
 
 
 class Wake:
@@ -37,12 +43,16 @@ class Wake:
         self._heard.hear(Received(0, frame))
         return False
 
-    def up(self, t: Nanos) -> None:
-        """Resets all drives; BusError with those that have not said within `PATIENCE` that they are up."""
+    def up(self, t: Nanos, going: Callable[[], None]) -> None:
+        """Resets all drives; BusError with those that have not said within `PATIENCE` that they are up.
+
+        going: asked again and again; raises where that is to end.
+        """
         for node in self._nodes:
             self._send(nmt.command(nmt.RESET_NODE, node.id))
         deadline = self._clock() + PATIENCE
         while missing := [node for node in self._nodes if node.id not in self._heard.boots]:
+            going()
             left = deadline - self._clock()
             if left <= 0.0:
                 names = ", ".join(map(str, missing))
@@ -50,4 +60,4 @@ class Wake:
                     f"{names}: no boot-up message within {PATIENCE:g} s of the NMT reset: is it powered and "
                     "wired, with this node number and bit rate?"
                 )
-            self._pull(t, left)
+            self._pull(t, min(left, REPEAT))

@@ -86,7 +86,15 @@ def perform(subject: Subject, terms: Terms) -> Generator[Result, None, None]:
 
 def _approach(subject: Subject) -> None:
     """Looks whether there is a drive that nobody drives."""
-    subject.sdo.upload(0x1000, 0)
+    try:
+        subject.sdo.upload(0x1000, 0)
+    except SdoError as error:
+        if error.code != TIMEOUT:
+            raise
+        raise BusError(
+            f"nobody answers as node {subject.node.id}: is the drive powered and wired, with this number and "
+            "the bus's bit rate? `hilbed bus scan` lists who is there"
+        ) from None
     state = subject.state()
     if state in (cia402.ENABLED, cia402.QUICK_STOP_ACTIVE):
         raise BusError(f"{subject.node} is in {state}: somebody drives it; switch it off first")

@@ -42,6 +42,8 @@ def read_recording(folder: Path, settings: Sequence[str] = ()) -> Recording:
             )
     signals = _signals(folder / SIGNALS)
     log = read_log(folder / CAN)
+    if not log:
+        raise ScenarioError(f"{folder / CAN} holds no frame: there is nothing to replay")
     loaded = load(str(folder / SCENARIO), settings)
     frames = sorted(exact(log, signals, boot_of(loaded.scenario)), key=lambda received: received.t)
     return Recording(loaded, signals, tuple(received for received in frames if received.t > 0))

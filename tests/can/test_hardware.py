@@ -199,7 +199,7 @@ def refused(interface: str | None, channel: str | None = None, bitrate: int | No
         (("socketcan", None), ["socketcan needs a channel, such as -c can0"]),
         (("socketcan", "nocan7"), ["socketcan nocan7 cannot be opened"]),
         (("slcan", "/dev/nothing"), ["slcan /dev/nothing cannot be opened", "there is no such device"]),
-        (("slcan", None), ["slcan cannot be opened", "channel"]),
+        (("slcan", None), ["slcan needs a channel: say which with -c"]),
         (("pcan", "PCAN_USBBUS1"), ["pcan PCAN_USBBUS1 cannot be opened"]),
     ],
 )

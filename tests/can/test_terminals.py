@@ -12,11 +12,15 @@ from firmware_sim.terminal import Terminal as Firmware
 from hilbed.can import terminal
 from hilbed.can.drive_table import load_table
 from hilbed.can.node import Node
-from hilbed.can.terminals import PATIENCE, Terminals
-from hilbed.types import BusError, Frame, Nanos
+from hilbed.can.terminals import PATIENCE, REPEAT, Terminals
+from hilbed.types import BusError, Frame, Interrupted, Nanos
 
 LEFT = Node("left", 1, load_table("hilbed402"), kind="ecu")
 RIGHT = Node("right", 2, load_table("hilbed402"), kind="ecu")
+
+
+def go_on() -> None:
+    """Never tells that it is over."""
 
 
 class Far:
@@ -57,7 +61,7 @@ class Far:
 
 def test_in_lockstep_every_tick_has_its_answer() -> None:
     far = Far(LEFT, RIGHT, delay=3)
-    far.terminals.power(0)
+    far.terminals.power(0, go_on)
     for k in range(600):  # the counter wraps
         far.tick(counts=k)
         assert {one.answer.counter for one in far.terminals.by_node.values()} == {k & 0xFF}
@@ -68,8 +72,22 @@ def test_firmware_that_is_not_there_is_named() -> None:
     far = Far(LEFT, RIGHT)
     far.deaf.add(2)
     with pytest.raises(BusError, match=r"^drive right \(node 2\): its firmware does not come up .* --node 2"):
-        far.terminals.power(0)
+        far.terminals.power(0, go_on)
     assert far.time == pytest.approx(PATIENCE)
+
+
+def test_switching_on_ends_where_it_is_told_to() -> None:
+    far, asked = Far(LEFT), iter([None, None, Interrupted("SIGTERM")])
+    far.deaf.add(LEFT.id)
+
+    def going() -> None:
+        verdict = next(asked)
+        if verdict is not None:
+            raise verdict
+
+    with pytest.raises(Interrupted):
+        far.terminals.power(0, going)
+    assert far.time == pytest.approx(2 * REPEAT)
 
 
 def test_firmware_that_starts_late_is_switched_on_again() -> None:
@@ -85,13 +103,13 @@ def test_firmware_that_starts_late_is_switched_on_again() -> None:
         pull(t, timeout)
 
     far.terminals._pull = start_late
-    far.terminals.power(0)
+    far.terminals.power(0, go_on)
     assert far.time < PATIENCE
 
 
 def test_firmware_that_falls_silent_is_given_up_once() -> None:
     far = Far(LEFT, RIGHT)
-    far.terminals.power(0)
+    far.terminals.power(0, go_on)
     far.tick()
     far.deaf.add(1)
     with pytest.raises(BusError, match=r"t = 0.5 s: drive left \(node 1\): no answer"):
@@ -104,7 +122,7 @@ def test_firmware_that_falls_silent_is_given_up_once() -> None:
 
 def test_strangers_that_talk_all_the_time_do_not_keep_a_tick_waiting() -> None:
     far = Far(LEFT)
-    far.terminals.power(0)
+    far.terminals.power(0, go_on)
     far.deaf.add(1)
     pull = far.pull
 
@@ -119,7 +137,7 @@ def test_strangers_that_talk_all_the_time_do_not_keep_a_tick_waiting() -> None:
 
 def test_two_that_answer_are_told() -> None:
     far = Far(LEFT)
-    far.terminals.power(0)
+    far.terminals.power(0, go_on)
     far.change = lambda frame: [frame, frame]
     with pytest.raises(BusError, match="two processes are its firmware"):
         far.tick()
@@ -131,7 +149,7 @@ def test_two_that_answer_are_told() -> None:
 def test_in_real_time_a_late_answer_is_held_and_counted(delay: int, late: int, held: int) -> None:
     """There are two pulls a tick: an answer that the next tick still finds in time is not late."""
     far = Far(LEFT, lockstep=False)
-    far.terminals.power(0)
+    far.terminals.power(0, go_on)
     far.delay = delay
     for _ in range(20):
         far.tick()

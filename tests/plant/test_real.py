@@ -19,7 +19,7 @@ from hilbed.can.wire import Wire
 from hilbed.record.folder import RunFolder
 from hilbed.robots.diffdrive import DiffDrive, DiffDriveSpec
 from hilbed.robots.limited import Limited
-from hilbed.runner import perform
+from hilbed.runner import Watch, perform
 from hilbed.scenario.load import Loaded, load
 from hilbed.types import Command, Frame, ScenarioError
 from tests.build.scenarios import small
@@ -117,6 +117,14 @@ def test_a_real_drive_that_is_not_there(tmp_path: Path, monkeypatch: pytest.Monk
     outcome = perform(scenario(tmp_path, *settings), None, armed=True)
     assert outcome.status == 7
     assert outcome.verdict["reason"].startswith("drive left (node 1): no boot-up message")
+
+
+def test_waiting_for_a_real_drive_ends_when_it_is_told_to(tmp_path: Path) -> None:
+    settings = ["bus.interface=virtual", "bus.channel=empty", "realtime={}"]
+    asked = iter([None, None, "SIGTERM"])
+    watch = Watch(stop=lambda: next(asked))
+    outcome = perform(scenario(tmp_path, *settings), None, watch=watch, armed=True)
+    assert (outcome.status, outcome.verdict["reason"]) == (2, "SIGTERM while the drives were brought up")
 
 
 def test_refused_without_a_bus(tmp_path: Path) -> None:

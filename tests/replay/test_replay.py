@@ -34,6 +34,7 @@ from tests.replay.runs import recorded
         (
             "disturbances=[{kind: slip_patch, corner: [0, -1], opposite: [1, 1], friction: 0.1}, "
             "{kind: command_noise, start: 0.3, size: [0.05, 0.2]}]",
+            "plant.start_std=[0.05, 0.05, 0.02]",
         ),
     ],
 )
@@ -158,6 +159,12 @@ def test_signals_of_an_older_bench_are_told(run: Path) -> None:
     np.savez(run / "signals.npz", **signals)
     with pytest.raises(ScenarioError, match="azimuth/std"):
         perform(read_recording(run))
+
+
+def test_a_log_without_frames_is_told(run: Path) -> None:
+    (run / "can.log").write_text("")
+    with pytest.raises(ScenarioError, match=r"can\.log holds no frame"):
+        read_recording(run)
 
 
 def test_no_folder_is_told(tmp_path: Path) -> None:
