@@ -24,13 +24,6 @@ def duty(q15: int) -> float:
     return q15 / Q15 if q15 >= -Q15 else -1.0
 
 
-def micro(speed: float) -> int:
-    """Converts a speed (rad/s) to the µrad/s of a terminal frame, an I32 that clips at 2147 rad/s."""
-    if not -2147.0 <= speed <= 2147.0:
-        return 2_147_000_000 if speed > 0.0 else -2_147_000_000
-    return round(1e6 * speed)
-
-
 def speed(micro: int) -> float:
     """Converts µrad/s to rad/s."""
     return micro * 1e-6

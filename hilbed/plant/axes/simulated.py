@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection
 from typing import Protocol, TypeAlias, cast
 
 from firmware_sim import Drive
+from firmware_sim.terminal import micro
 from hilbed.plant import pins
 from hilbed.plant.axes.axis import Encoder, Train
 from hilbed.ports import Bus
@@ -112,7 +113,7 @@ class SimulatedAxis:
         self.duty = duty
         if firmware.speed_ref != self._followed:
             self._followed = firmware.speed_ref
-            self.speed_ref = pins.speed(pins.micro(self._followed))
+            self.speed_ref = pins.speed(micro(self._followed))
         self.current = train.current
         self.supply_current = train.supply_current
         return torque
