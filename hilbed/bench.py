@@ -37,7 +37,7 @@ def bench(scenario: str) -> int:
     print(_table(loaded.name, verdict, beside))
     print(f"peak memory: {memory:.0f} MB, of the camera's process {child:.0f} MB")
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
-    print(bench_particles.table(list(bench_particles.measured())))
+    print(bench_particles.report())
     return outcome.status
 
 

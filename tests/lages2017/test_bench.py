@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hilbed.bench_particles import GOAL, Timed, cloud_at, commands, table, told_run
+from hilbed.bench_particles import GOAL, Timed, cloud_at, commands, cycle_times, table, told_run
 from hilbed.control.support import most_supported
 from hilbed.types import Array
 from tests.lages2017.experiment import experiment
@@ -41,7 +41,14 @@ def test_a_filter_of_another_size_has_the_same_belief(k: int) -> None:
 
 def test_the_table_has_a_line_for_each_stage_and_one_for_the_cycle() -> None:
     stages = [Timed("law", 1e-4, 1e-4, 1e-2), Timed("selection, first", 2e-4, 2e-4, 4e-2, 1e-3)]
-    law, selection, cycle = table(stages).splitlines()[1:]
+    law, selection, stages_in_all, cycle = table(stages, [1e-4, 2e-4, 3e-4]).splitlines()[1:]
     assert law.split() == ["law,", "ms", "0.100", "0.100", "10.000", "100"]
     assert selection.split()[-3:] == ["200", "1.000", "0.20"]
-    assert cycle.endswith("0.30 ms")
+    assert stages_in_all.endswith("0.30 ms")
+    assert "over 3 cycles of a run: 0.20 ms (median), 0.29 ms (95 %)" in cycle
+
+
+def test_a_cycle_is_measured_for_each_of_the_run() -> None:
+    times = cycle_times(TOLD[:20])
+    assert len(times) == 20
+    assert min(times) > 0
