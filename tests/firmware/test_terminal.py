@@ -115,4 +115,5 @@ def test_microradians_fit_and_clip(speed: float) -> None:
     if abs(speed) < 2000:
         assert abs(pins.speed(micro(speed)) - speed) <= 0.5001e-6
     else:
-        assert micro(speed) * speed > 0 and abs(micro(speed)) >= 2_000_000_000
+        assert micro(speed) * speed > 0
+        assert abs(micro(speed)) >= 2_000_000_000
