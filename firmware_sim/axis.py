@@ -9,13 +9,14 @@ from firmware_sim.cia402 import OPTIONS, QUICK_STOPS, TRANSITIONS, Command, Ramp
 from firmware_sim.entry import key
 from firmware_sim.errors import ErrorCode, Errors
 from firmware_sim.modes import MODES, Plan, stopping
-from firmware_sim.objects.profile import HOMING, POSITION_MODES
+from firmware_sim.objects.profile import POSITION_MODES
 from firmware_sim.positioner import Positioner
 from firmware_sim.ramp import approach
 from firmware_sim.settings import read_loop, read_motor, read_settings
 from firmware_sim.speedmeter import Speedmeter
 
 _CONTROL, _MODE, _DISPLAY, _TARGET = key(0x6040), key(0x6060), key(0x6061), key(0x60FF)
+_INPUTS = key(0x60FD)
 # Bound here: to look up a member of an enumeration takes longer than a multiplication.
 _ENABLED: Final = State.ENABLED
 _POWERED = (State.ENABLED, State.QUICK_STOP, State.REACTION)
@@ -42,16 +43,17 @@ class Axis:
         self.clipped = self.halted = self.limited = False
         self.counts = self.current = self.supply = 0
         self.stop: Stop | None = None
-        self._word = self._low = self._stopped = 0
+        self._word = self._low = self._stopped = self._inputs = 0
         self.meter = Speedmeter(1, 0.0)
-        self.positioner = Positioner(values)
+        self.positioner = Positioner(values, read_settings(values))
         self._tune()
 
     def reset(self) -> None:
         """Power-on: chopper open, no errors, waiting for the master."""
         self._word = 0
         self.halted = False
-        self.positioner = Positioner(self.values)
+        self.positioner = Positioner(self.values, self.settings)
+        self.values[_INPUTS] = self._inputs
         self.errors.clear(*ErrorCode)
         self._tune()
         self._enter(State.SWITCH_ON_DISABLED)
@@ -74,8 +76,7 @@ class Axis:
         target, rise, fall = self.plan
         if self.positioner.active:
             target = self.positioner.step(counts)
-            if self.positioner.lost:
-                self.fail(ErrorCode.FOLLOWING)
+            if self.positioner.place.event and self._fails():
                 if not self.bridge_enabled:
                     return 0
                 target, rise, fall = self.plan
@@ -89,6 +90,11 @@ class Axis:
             if not self.bridge_enabled:
                 return 0
         return round(duty * FULL_DUTY)
+
+    def read(self, inputs: int) -> None:
+        """Takes the digital inputs, in the bits of 60FD."""
+        self._inputs = self.values[_INPUTS] = inputs
+        self.event = True
 
     def refresh(self) -> None:
         """Writes statusword and actual values into the dictionary."""
@@ -132,15 +138,24 @@ class Axis:
         word = self.values[_CONTROL]
         if word != self._word or self.state is not _ENABLED or self.stop is not None:
             command = cia402.decode(self._word, word)
-            begins = word & ~self._word & cia402.BEGIN
-            self._word = word
+            before, self._word = self._word, word
             self.halted = bool(word & cia402.HALT)
             if command is not None:
                 self._obey(command)
-            if begins and self.state is _ENABLED and self.values[_MODE] == HOMING:
-                self.positioner.set_home(self.values, self.settings, self.counts)
-                self.event = True
+            if self.state is _ENABLED:
+                self.positioner.heed(self.values[_MODE], before, word, self.counts)
+                self._fails()
         self._replan()
+
+    def _fails(self) -> bool:
+        """Takes over what has become of a position mode; tells whether the axis has to stop for it."""
+        place = self.positioner.place
+        self.event |= place.event
+        place.event = False
+        trouble, place.trouble = place.trouble, None
+        if trouble is not None:
+            self.fail(trouble)
+        return trouble is not None
 
     def _obey(self, command: Command) -> None:
         state = self.state
@@ -221,7 +236,7 @@ class Axis:
         self.settings = read_settings(self.values)
         self._trip = self.settings.trip
         self._least = self.settings.least
-        self.positioner.configure(self.values, self.settings)
+        self.positioner.place.configure(self.settings)
 
     def _replan(self) -> None:
         values, settings = self.values, self.settings
@@ -239,9 +254,9 @@ class Axis:
         self.plan = self._planned(target)
         going = self.state is _ENABLED and self.stop is None and not self.halted
         if mode in POSITION_MODES and going:
-            self.limited = self.positioner.aim(values, settings, self.counts)
-        else:
-            self.positioner.active = False
+            self.limited = self.positioner.aim(mode, self.counts)
+        elif not self.positioner.idle:
+            self.positioner.rest(self.halted and self.state is _ENABLED and self.stop is None)
 
     def _planned(self, target: float) -> Plan:
         if self.stop is not None:

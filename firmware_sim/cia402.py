@@ -62,7 +62,6 @@ _PATTERNS = (
     (0x8F, 0x0F, Command.ENABLE),
 )
 _RESET, HALT = 0x80, 0x100
-BEGIN = 0x10  # in HOMING: start; its rising edge acts
 _DECODED = tuple(next(c for mask, bits, c in _PATTERNS if word & mask == bits) for word in range(256))
 
 

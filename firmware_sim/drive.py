@@ -55,6 +55,10 @@ class Drive:
             node.announce(t)
         return duty
 
+    def read(self, inputs: int) -> None:
+        """Takes the digital inputs as they are from now on: 1 negative, 2 positive limit, 4 home switch."""
+        self._axis.read(inputs)
+
     @property
     def bridge_enabled(self) -> bool:
         """False: the chopper is open and the wheel coasts."""

@@ -21,6 +21,7 @@ class ErrorCode(IntEnum):
     COMMUNICATION = 0x8100  # SYNC lost, or the node was taken out of operation
     HEARTBEAT_LOST = 0x8130
     PDO_TOO_SHORT = 0x8210
+    HOMING = 0x8600  # of the positioning: no home was found in time
     FOLLOWING = 0x8611  # the axis does not keep up with its position demand
 
 
@@ -31,6 +32,7 @@ _BITS: dict[ErrorCode, int] = {
     ErrorCode.COMMUNICATION: 16,
     ErrorCode.HEARTBEAT_LOST: 16,
     ErrorCode.PDO_TOO_SHORT: 16,
+    ErrorCode.HOMING: 32,
     ErrorCode.FOLLOWING: 32,
 }
 

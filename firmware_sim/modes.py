@@ -7,7 +7,14 @@ from math import inf
 from typing import TypeAlias
 
 from firmware_sim.cia402 import Ramp
-from firmware_sim.objects.profile import CYCLIC_POSITION, CYCLIC_VELOCITY, HOMING, NO_MODE, PROFILE_VELOCITY
+from firmware_sim.objects.profile import (
+    CYCLIC_POSITION,
+    CYCLIC_VELOCITY,
+    HOMING,
+    NO_MODE,
+    PROFILE_POSITION,
+    PROFILE_VELOCITY,
+)
 from firmware_sim.settings import Settings
 
 Plan: TypeAlias = tuple[float, float, float]
@@ -40,10 +47,16 @@ def _position(_settings: Settings, _target: float) -> Plan:
     return 0.0, inf, inf
 
 
+def _homing(settings: Settings, _target: float) -> Plan:
+    """The search says where the speed goes; it is ramped here."""
+    return 0.0, settings.homing_ramp, settings.homing_ramp
+
+
 MODES: dict[int, Callable[[Settings, float], Plan]] = {
     NO_MODE: _none,
+    PROFILE_POSITION: _position,
     PROFILE_VELOCITY: _profile_velocity,
-    HOMING: _none,
+    HOMING: _homing,
     CYCLIC_POSITION: _position,
     CYCLIC_VELOCITY: _cyclic_velocity,
 }

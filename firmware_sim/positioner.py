@@ -1,62 +1,77 @@
-"""What an axis does in a position mode: limits its target, follows it, and knows where home is."""
+"""The position modes of an axis, of which one at a time has the speed."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
-from firmware_sim.entry import key
-from firmware_sim.settings import Settings, read_position
+from firmware_sim.cyclic_position import CyclicPosition
+from firmware_sim.homing import Homing
+from firmware_sim.objects.profile import CYCLIC_POSITION, HOMING, PROFILE_POSITION
+from firmware_sim.place import Place
+from firmware_sim.profile_position import ProfilePosition
+from firmware_sim.settings import Settings
 
-_TARGET, _HOME = key(0x607A), key(0x607C)
 
+class PositionMode(Protocol):
+    """What a position mode does with controlwords, settings and ticks; counts: where the axis is."""
 
-class Positioner:
-    """The position loop in the numbers of the bus: position = polarity × counts + `home`.
+    def heed(self, before: int, word: int, counts: int) -> None:
+        """Takes the bits of a controlword that are the mode's own, in operation enabled."""
+        ...
 
-    active: whether the speed is the loop's; homed: whether a homing has been done since power-on; lost: the
-    axis is farther behind its demand than 6065 allows. Positions do not wrap: an axis with ends is meant.
-    """
+    def begin(self, counts: int) -> None:
+        """Takes the speed over; the demand is where the axis is."""
+        ...
 
-    __slots__ = ("_following", "_loop", "active", "home", "homed")
-
-    def __init__(self, values: dict[int, Any]) -> None:
-        self.active = self.homed = False
-        self.home = 0
-        self._following = 0.0
-        self._loop = read_position(values)
-
-    def configure(self, values: dict[int, Any], settings: Settings) -> None:
-        """Takes new gains and limits over, without a bump."""
-        demand = self._loop.demand
-        self._loop = read_position(values)
-        self._loop.start(demand)
-        self._following = settings.following
-
-    def set_home(self, values: dict[int, Any], settings: Settings, counts: int) -> None:
-        """Declares the position where the axis is now to be what 607C says."""
-        self.home = values[_HOME] - counts * settings.polarity
-        self.homed = True
-        self._loop.start(counts)
-
-    def aim(self, values: dict[int, Any], settings: Settings, counts: int) -> bool:
-        """Goes on, or begins, to follow the target; returns whether 607D limits it."""
-        if not self.active:
-            self._loop.start(counts)
-            self.active = True
-        target, low, high = values[_TARGET], settings.lowest, settings.highest
-        goal = low if target < low else high if target > high else target
-        self._loop.aim((goal - self.home) * settings.polarity, settings.interpolation)
-        return bool(goal != target)
+    def aim(self) -> bool:
+        """Something was written; returns whether 607D limits the target."""
+        ...
 
     def step(self, counts: int) -> float:
         """Returns the speed (rad/s) for this tick."""
-        return self._loop.step(counts)
+        ...
 
-    @property
-    def lost(self) -> bool:
-        return abs(self._loop.error) > self._following
+    def rest(self, halted: bool) -> None:
+        """Leaves the speed to others: the axis is halted, or in another mode, or has no power."""
+        ...
 
-    def shown(self, settings: Settings) -> tuple[float, float]:
-        """Returns position demand (6062) and following error (60F4)."""
-        polarity, loop = settings.polarity, self._loop
-        return loop.demand * polarity + self.home, loop.error * polarity
+
+class Positioner:
+    """active: whether the speed is that of `step`, which is the mode's; idle: no mode has anything to do."""
+
+    __slots__ = ("_modes", "_now", "active", "homing", "idle", "place", "profile", "step")
+
+    def __init__(self, values: dict[int, Any], settings: Settings) -> None:
+        self.place = Place(values, settings)
+        self.homing = Homing(self.place)
+        self.profile = ProfilePosition(self.place)
+        self._modes: dict[int, PositionMode] = {
+            CYCLIC_POSITION: CyclicPosition(self.place),
+            PROFILE_POSITION: self.profile,
+            HOMING: self.homing,
+        }
+        self._now: PositionMode = self.homing
+        self.step = self._now.step
+        self.active, self.idle = False, True
+
+    def aim(self, mode: int, counts: int) -> bool:
+        """Goes on, or begins, to do what the mode asks for; returns whether 607D limits its target."""
+        wanted = self._modes[mode]
+        if self._now is not wanted:
+            self.rest(halted=False)
+            self._now, self.step = wanted, wanted.step
+        if not self.active:
+            self.active, self.idle = True, False
+            self.place.loop.start(counts)
+            wanted.begin(counts)
+        return wanted.aim()
+
+    def heed(self, mode: int, before: int, word: int, counts: int) -> None:
+        """Hands a controlword to the mode, if it is a position mode that has begun."""
+        if not self.idle and self._modes.get(mode) is self._now:
+            self._now.heed(before, word, counts)
+
+    def rest(self, halted: bool) -> None:
+        """Has no mode move the axis; halted: it may go on where it was."""
+        self.active, self.idle = False, not halted
+        self._now.rest(halted)

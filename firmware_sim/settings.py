@@ -22,7 +22,7 @@ class Settings(NamedTuple):
     rise, slew and falls: rad/s a tick; trip: mA; least: quarters of a volt; torque_scale, current_scale:
     per mille of the rated value a mA. unit and both scales are negative where velocities are reversed (607E).
     lowest, highest: where a position target may be, following: how far behind the axis may be, counts;
-    interpolation: ticks.
+    interpolation: ticks; homing_ramp: rad/s a tick.
     """
 
     unit: float
@@ -41,6 +41,7 @@ class Settings(NamedTuple):
     highest: float
     following: float
     interpolation: float
+    homing_ramp: float
 
 
 def read_settings(values: Values) -> Settings:
@@ -69,6 +70,7 @@ def read_settings(values: Values) -> Settings:
         highest=values[key(0x607D, 2)],
         following=values[key(0x6065)],
         interpolation=max(values[key(0x60C2, 1)] * 10.0 ** values[key(0x60C2, 2)] / TICK, 1.0),
+        homing_ramp=values[key(0x609A)] * unit * TICK,
     )
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 from firmware_sim.cia402 import State
 from firmware_sim.entry import key
-from firmware_sim.objects.profile import HOMING, PROFILE_VELOCITY
+from firmware_sim.objects.profile import CYCLIC_POSITION, HOMING, PROFILE_POSITION, PROFILE_VELOCITY
 
 if TYPE_CHECKING:
     from firmware_sim.axis import Axis
@@ -18,6 +19,9 @@ LIMITED: Final = 0x0800
 SPEED_ZERO: Final = 0x1000  # in PV
 FOLLOWING: Final = 0x1000  # in CSV and CSP
 ATTAINED: Final = 0x1000  # in HOMING
+ACKNOWLEDGED: Final = 0x1000  # in PP
+LAGGING: Final = 0x2000  # in PP and CSP
+NOT_FOUND: Final = 0x2000  # in HOMING
 
 _STATUS, _DEMAND, _VELOCITY, _POSITION = key(0x6041), key(0x606B), key(0x606C), key(0x6064)
 _TORQUE, _CURRENT, _DC_LINK = key(0x6077), key(0x6078), key(0x6079)
@@ -45,13 +49,13 @@ def statusword(axis: Axis) -> int:
         word |= LIMITED
     threshold = settings.threshold
     slow = -threshold <= speed <= threshold
-    cyclic = axis.values[_MODE] != PROFILE_VELOCITY
+    mode = axis.values[_MODE]
     going = axis.stop is None and not axis.halted
     if not going and slow:
         word |= TARGET_REACHED
-    if cyclic:
-        if axis.values[_MODE] == HOMING:
-            return word | (ATTAINED | TARGET_REACHED if axis.positioner.homed else 0)
+    if mode != PROFILE_VELOCITY:
+        if mode in _POSITIONED:
+            return word | _POSITIONED[mode](axis, slow)
         if going and state is _ENABLED:
             word |= FOLLOWING
         return word
@@ -64,6 +68,40 @@ def statusword(axis: Axis) -> int:
     return word
 
 
+def _homing(axis: Axis, slow: bool) -> int:
+    """Bits 13, 12, 10: none of them on the way, 10 alone where no search is on."""
+    homing = axis.positioner.homing
+    if homing.searching:
+        return 0
+    found = NOT_FOUND if homing.failed else ATTAINED if axis.positioner.place.homed else 0
+    return found | TARGET_REACHED if slow else found
+
+
+def _profile(axis: Axis, _: bool) -> int:
+    profile = axis.positioner.profile
+    word = ACKNOWLEDGED if profile.acknowledged else 0
+    if profile.reached and axis.positioner.active:
+        word |= TARGET_REACHED
+    return word | _lagging(axis)
+
+
+def _cyclic(axis: Axis, _: bool) -> int:
+    going = axis.stop is None and not axis.halted
+    return _lagging(axis) | (FOLLOWING if going and axis.state is _ENABLED else 0)
+
+
+def _lagging(axis: Axis) -> int:
+    return LAGGING if axis.positioner.place.lagging else 0
+
+
+_POSITIONED: dict[int, Callable[[Axis, bool], int]] = {
+    PROFILE_POSITION: _profile,
+    HOMING: _homing,
+    CYCLIC_POSITION: _cyclic,
+}
+"""What the statusword shows in each position mode; slow: whether the axis stands."""
+
+
 def refresh(axis: Axis) -> None:
     """Writes statusword and actual values into the dictionary, in the units and signs of the bus."""
     values, settings = axis.values, axis.settings
@@ -71,13 +109,15 @@ def refresh(axis: Axis) -> None:
     values[_STATUS] = statusword(axis)
     values[_DEMAND] = _rounded(axis.speed_ref / unit, _I32)
     values[_VELOCITY] = _rounded(axis.meter.speed / unit, _I32)
-    position = axis.counts * settings.polarity + axis.positioner.home
+    place = axis.positioner.place
+    position = axis.counts * settings.polarity + place.home
     if not _LEAST <= position <= _MOST:  # mirrored, the lowest count has no counterpart
         position = (position - _LEAST) % (1 << 32) + _LEAST
     values[_POSITION] = position
     if axis.positioner.active:
-        demand, error = axis.positioner.shown(settings)
-        values[_POSITION_DEMAND], values[_FOLLOWING_ERROR] = _rounded(demand, _I32), _rounded(error, _I32)
+        loop = place.loop
+        values[_POSITION_DEMAND] = _rounded(place.position(loop.demand), _I32)
+        values[_FOLLOWING_ERROR] = _rounded(loop.error * settings.polarity, _I32)
     values[_TORQUE] = _rounded(current * settings.torque_scale, _I16)
     values[_CURRENT] = _rounded(current * settings.current_scale, _I16)
     values[_DC_LINK] = axis.supply * 250

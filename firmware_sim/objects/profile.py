@@ -10,9 +10,10 @@ from firmware_sim.datatypes import I8, I16, I32, U8, U16, U32
 from firmware_sim.entry import Entry, Object, record, var
 
 NO_MODE, PROFILE_POSITION, PROFILE_VELOCITY, HOMING, CYCLIC_POSITION, CYCLIC_VELOCITY = 0, 1, 3, 6, 8, 9
-MODES = (NO_MODE, PROFILE_VELOCITY, HOMING, CYCLIC_POSITION, CYCLIC_VELOCITY)
+MODES = (NO_MODE, PROFILE_POSITION, PROFILE_VELOCITY, HOMING, CYCLIC_POSITION, CYCLIC_VELOCITY)
+POSITION_MODES = frozenset((PROFILE_POSITION, HOMING, CYCLIC_POSITION))
 HERE = 37  # homing method: the position now is the home offset
-POSITION_MODES = frozenset((CYCLIC_POSITION,))
+HOMING_METHODS = (17, 18, 19, 20, 21, 22, HERE)  # the others look for a switch
 
 _states: tuple[Object, ...] = (
     var(0x6007, "Abort connection option", I16, "rw", 3, choices=(0, 1, 2, 3)),
@@ -56,6 +57,8 @@ _position: tuple[Object, ...] = (
     var(0x6062, "Position demand in counts", I32, "ro", mappable=True),
     var(0x6064, "Position actual in counts", I32, "ro", mappable=True),
     var(0x6065, "Following error window in counts", U32, "rw", 0xFFFFFFFF),
+    var(0x6067, "Position window in counts", U32, "rw", 66),
+    var(0x6068, "Position window time in ms", U16, "rw", 10),
     var(0x6071, "Target torque in 1/1000 of rated", I16, "rw", mappable=True),
     var(0x607A, "Target position in counts", I32, "rw", mappable=True),
     var(0x607C, "Home offset in counts", I32, "rw"),
@@ -65,8 +68,16 @@ _position: tuple[Object, ...] = (
         Entry(1, "Lowest", I32, "rw", -(2**31)),
         Entry(2, "Highest", I32, "rw", 2**31 - 1),
     ),
+    var(0x6081, "Profile velocity in counts/s", U32, "rw", 105_000, mappable=True),
     var(0x60F4, "Following error actual in counts", I32, "ro", mappable=True),
-    var(0x6098, "Homing method", I8, "rw", HERE, choices=(HERE,)),
+    var(0x6098, "Homing method", I8, "rw", HERE, choices=HOMING_METHODS),
+    record(
+        0x6099,
+        "Homing speeds in counts/s",
+        Entry(1, "Search for the switch", U32, "rw", 5_000),
+        Entry(2, "Search for its edge", U32, "rw", 1_000),
+    ),
+    var(0x609A, "Homing acceleration in counts/s^2", U32, "rw", 105_000, low=1),
     var(0x60B2, "Torque offset in 1/1000 of rated", I16, "rw", mappable=True),
     record(
         0x60C2,

@@ -53,4 +53,5 @@ TUNING: tuple[Object, ...] = (
         Entry(4, "Reference slew in CSV in rad/s^2, 0 off", REAL32, "rw", 0.0, 0.0, 100000.0),
     ),
     var(0x2014, "Position loop gain in 1/s", REAL32, "rw", 20.0, low=0.0, high=500.0),
+    var(0x2015, "Homing time-out in ms, 0 off", U16, "rw", 10_000),
 )
