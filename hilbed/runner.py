@@ -139,7 +139,7 @@ def perform(
         hash=run_hash(signals, bus.digest()),
         signals_hash=signals_hash(signals),
         events=bench.events(),
-        parts=_parts(bench, pacer),
+        parts=_parts(bench, loaded.scenario, pacer),
     )
     content = verdict.conclude(account, signals, loaded.scenario.criteria)
     if folder is not None:
@@ -152,9 +152,11 @@ def _pacer(scenario: Scenario, cost: Cost) -> Pacer | None:
     return None if spec is None else Pacer(spec, nanos(scenario.period), cost)
 
 
-def _parts(bench: Bench, pacer: Pacer | None) -> dict[str, Any]:
+def _parts(bench: Bench, scenario: Scenario, pacer: Pacer | None) -> dict[str, Any]:
     """Returns what verdict.json says of counters, of a run in real time, of a bus that others are on."""
     counted = {"estimator": counts_of(bench.rig.estimator), "controller": counts_of(bench.rig.controller)}
+    sensors = zip(scenario.sensors, bench.rig.sensors, strict=False)  # a recorded robot brings its own
+    counted |= {f"sensors.{name}": counts for name, sensor in sensors if (counts := counts_of(sensor))}
     parts = {"counts": {name: _numbers(counts) for name, counts in counted.items()}, **bench.account()}
     if pacer is not None:
         parts["realtime"] = pacer.ledger.summary(pacer.period, bench.late())

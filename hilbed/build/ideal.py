@@ -42,7 +42,7 @@ def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: P
         IdealBase(plant, vehicle),
         sensors,
         make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, told)),
-        make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
+        make_controller(scenario.controller, Guidance(reference, period, robot)),
         plant,
         period,
         cost,

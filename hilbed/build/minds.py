@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from hilbed.control import OWN_COMMAND
-from hilbed.control.ramps import Ramps, unlimited
+from hilbed.control.ramps import Ramps
 from hilbed.control.steered import Steered
-from hilbed.ports import Controller, Estimator, Reference
+from hilbed.ports import Controller, Estimator, Reference, Robot
 from hilbed.spec import Point
 from hilbed.types import Command, Estimate, Nanos, Pose, Rng
 
@@ -25,15 +25,11 @@ class Surroundings(NamedTuple):
 
 
 class Guidance(NamedTuple):
-    """What a controller is given: a path, ns of the cycle, and its robot.
-
-    command: the robot's own for v (m/s) and w (rad/s); limited: a command as the robot takes it.
-    """
+    """What a controller is given: a path, ns of the cycle, its robot (None for one that takes any twist)."""
 
     reference: Reference | None
     period: Nanos
-    command: Callable[[float, float], Command] = Command
-    limited: Callable[[Command], Command] = unlimited
+    robot: Robot | None = None
 
 
 class Idle:
@@ -54,9 +50,9 @@ def make_controller(spec: Any, guidance: Guidance) -> Controller:
     if spec is None:
         return Idle()
     controller = CONTROLLERS[spec.kind](spec, guidance)
-    if spec.kind in OWN_COMMAND or guidance.command is Command:
+    if spec.kind in OWN_COMMAND or guidance.robot is None:
         return controller
-    return Steered(controller, guidance.command)
+    return Steered(controller, guidance.robot)
 
 
 def _ekf(spec: Any, known: Surroundings) -> Estimator:
@@ -133,7 +129,7 @@ def _path_following(spec: Any, _: Guidance) -> Controller:
 
 
 def _ramps(spec: Any, guidance: Guidance) -> Controller:
-    return Ramps(spec, guidance.limited)
+    return Ramps(spec) if guidance.robot is None else Ramps(spec, guidance.robot.limited)
 
 
 def _cloud(spec: Any, guidance: Guidance) -> Controller:

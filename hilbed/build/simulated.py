@@ -102,7 +102,7 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
         DisturbedBase(base, robot.limited, effects_of(schedule, world)),
         sensors,
         make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, told)),
-        make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
+        make_controller(scenario.controller, Guidance(reference, period, robot)),
         plant,
         period,
         cost,

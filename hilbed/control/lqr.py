@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import copysign, cos, sin
+from math import copysign, cos, pi, sin
 
 import numpy as np
 
@@ -52,7 +52,10 @@ def body_error(reference: Pose, robot: Pose) -> tuple[float, float, float]:
 
 
 class Lqr:
-    """v = v_r cos e_ψ + dv, w = w_r + dw with (dv, dw) = K(v_r, w_r) e, then limited."""
+    """v = v_r cos e_ψ + dv, w = w_r + dw with (dv, dw) = K(v_r, w_r) e, then limited.
+
+    `beyond` counts cycles with |e_ψ| > π/2, far from where the error model was linearised.
+    """
 
     def __init__(self, spec: LqrSpec, reference: Reference, period: Nanos) -> None:
         self._reference = reference
@@ -61,13 +64,19 @@ class Lqr:
         self._R = np.diag(np.power(spec.effort, -2.0))
         self._limits = spec.max_speed, spec.max_turn_rate
         self._gains: dict[tuple[int, int], tuple[Row, Row]] = {}
+        self.beyond = 0
         self._gain(*reference.at(0)[1:])  # brings scipy in before the first cycle
+
+    def counts(self) -> dict[str, float]:
+        """Returns in how many cycles the law was asked for what it was not made for."""
+        return {"beyond": self.beyond}
 
     def step(self, t: Nanos, estimate: Estimate) -> Command:
         """Returns the command for the period from `t`."""
         x, y, yaw = estimate.mean.tolist()
         pose, v, w = self._reference.at(t)
         ex, ey, turn = body_error(pose, Pose(x, y, yaw))
+        self.beyond += abs(turn) > pi / 2
         (vx, vy, vt), (wx, wy, wt) = self._gain(v, w)
         return Command(
             _limited(v * cos(turn) + vx * ex + vy * ey + vt * turn, self._limits[0]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from hilbed.clock import seconds
 from hilbed.spec import Finite, Spec
@@ -33,13 +33,26 @@ def unlimited(command: Command) -> Command:
     return command
 
 
-class Ramps(NamedTuple):
-    """Both inputs at each period's start, as the robot takes them, whatever the pose."""
+class Ramps:
+    """Both inputs at each period's start, as the robot takes them, whatever the pose.
 
-    spec: RampsSpec
-    limited: Callable[[Command], Command] = unlimited
+    `limited` counts the cycles in which they were beyond the robot's limits.
+    """
+
+    def __init__(self, spec: RampsSpec, limit: Callable[[Command], Command] = unlimited) -> None:
+        """limit: a command as the robot takes it."""
+        self._spec = spec
+        self._limit = limit
+        self.limited = 0
+
+    def counts(self) -> dict[str, float]:
+        """Returns in how many cycles the ramps were beyond the robot's limits."""
+        return {"limited": self.limited}
 
     def step(self, t: Nanos, estimate: Estimate) -> Command:  # noqa: ARG002
         """Returns the command for the period from `t`."""
-        v, γ, s = self.spec.speed, self.spec.steering, seconds(t)
-        return self.limited(Command(v.start + v.rate * s, γ.start + γ.rate * s))
+        v, γ, s = self._spec.speed, self._spec.steering, seconds(t)
+        asked = Command(v.start + v.rate * s, γ.start + γ.rate * s)
+        command = self._limit(asked)
+        self.limited += command != asked
+        return command

@@ -35,6 +35,12 @@ def sound(state: State, P0: tuple[float, float]) -> State:
     return r, phi, P0[0], 0.0, P0[1]
 
 
+def nis(state: State, measured: float, variance: float) -> float:
+    """Returns the normalised innovation squared of an angle measured with a variance (rad²)."""
+    error = wrap(measured - state[1])
+    return error * error / (state[4] + variance)
+
+
 class KalmanBucy(NamedTuple):
     """The gain inside the differential equation: x̂' = f + (P₁₂, P₂₂)ᵀ φ̃ / R."""
 
@@ -54,11 +60,18 @@ class KalmanBucy(NamedTuple):
         error = wrap(measured - phi)
         return dr + k1 * error, dphi + k2 * error, d11 - k1 * P12, d12 - k1 * P22, d22 - k2 * P22
 
-    def corrected(self, state: State, measured: float) -> State:  # noqa: ARG002
+    def sound(self, state: State) -> State:
         return sound(state, self.noise.P0)
 
-    def nis(self, state: State, measured: float) -> float:  # noqa: ARG002
-        return nan
+    def corrected(self, state: State, measured: float) -> State:  # noqa: ARG002
+        return state
+
+    def nis(self, state: State, measured: float, way: float) -> float:
+        """Over a way (m) R is a variance R/way, and half of the correction K way has been made by its end."""
+        if not way:
+            return nan
+        left = 1.0 - 0.5 * state[4] * way / self.noise.R
+        return nis(state, measured, self.noise.R / way) / max(left, 0.5) ** 2
 
 
 class SampledKalman(NamedTuple):
@@ -73,24 +86,24 @@ class SampledKalman(NamedTuple):
         state = sound(state, self.noise.P0)
         return *reduced_rates(state[0], state[1]), *covariance_rates(state, self.noise.Q)
 
+    def sound(self, state: State) -> State:
+        return sound(state, self.noise.P0)
+
     def corrected(self, state: State, measured: float) -> State:
-        r, phi, P11, P12, P22 = sound(state, self.noise.P0)
+        r, phi, P11, P12, P22 = state
         R = self.noise.R
         S = P22 + R
         k1, k2 = P12 / S, P22 / S
         error = wrap(measured - phi)
-        return sound(
+        return bounded(
             (
                 r + k1 * error,
                 phi + k2 * error,
                 P11 - 2.0 * k1 * P12 + k1 * k1 * S,
                 (1.0 - k2) * (P12 - k1 * P22) + k1 * k2 * R,
                 (1.0 - k2) ** 2 * P22 + k2 * k2 * R,
-            ),
-            self.noise.P0,
+            )
         )
 
-    def nis(self, state: State, measured: float) -> float:
-        _, phi, _, _, P22 = sound(state, self.noise.P0)
-        error = wrap(measured - phi)
-        return error * error / (P22 + self.noise.R)
+    def nis(self, state: State, measured: float, way: float) -> float:  # noqa: ARG002
+        return nis(state, measured, self.noise.R)

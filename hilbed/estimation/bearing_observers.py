@@ -15,6 +15,7 @@ State = tuple[float, ...]
 """r (m), φ (rad); filters add their covariance P11, P12, P22."""
 
 NEAREST, FARTHEST = 0.05, 100.0  # m: an estimated distance stays between
+AXIS = 0.2  # of |sin φ|: where it is less the robot's axis passes through the landmark
 
 
 class Observer(Protocol):
@@ -28,12 +29,19 @@ class Observer(Protocol):
         """Returns d(state)/ds without steering; no correction where nothing is measured."""
         ...
 
+    def sound(self, state: State) -> State:
+        """Returns a state that can be gone on from: the same, but for a covariance that is not positive."""
+        ...
+
     def corrected(self, state: State, measured: float) -> State:
         """Returns the state after a measurement at one moment; the same where `rates` correct."""
         ...
 
-    def nis(self, state: State, measured: float) -> float:
-        """Returns the normalised innovation squared of a measurement; NaN where the observer has none."""
+    def nis(self, state: State, measured: float, way: float) -> float:
+        """Returns the normalised innovation squared of a measurement; NaN where the observer has none.
+
+        way: m since the measurement before.
+        """
         ...
 
 
@@ -75,10 +83,13 @@ class Lyapunov(NamedTuple):
         error = wrap(measured - phi)
         return dr + k1 * error, dphi + k2 * error
 
+    def sound(self, state: State) -> State:
+        return state
+
     def corrected(self, state: State, measured: float) -> State:  # noqa: ARG002
         return state
 
-    def nis(self, state: State, measured: float) -> float:  # noqa: ARG002
+    def nis(self, state: State, measured: float, way: float) -> float:  # noqa: ARG002
         return nan
 
 
@@ -90,7 +101,7 @@ class Luenberger(NamedTuple):
 
     p1: float = 64.0
     p2: float = 16.0
-    floor: float = 0.2
+    floor: float = AXIS
 
     def gain(self, r: float, phi: float) -> tuple[float, float]:
         """Returns what a unit of φ̃ adds to dr̂/ds and dφ̂/ds."""
@@ -110,8 +121,11 @@ class Luenberger(NamedTuple):
         error = wrap(measured - phi)
         return dr + k1 * error, dphi + k2 * error
 
+    def sound(self, state: State) -> State:
+        return state
+
     def corrected(self, state: State, measured: float) -> State:  # noqa: ARG002
         return state
 
-    def nis(self, state: State, measured: float) -> float:  # noqa: ARG002
+    def nis(self, state: State, measured: float, way: float) -> float:  # noqa: ARG002
         return nan

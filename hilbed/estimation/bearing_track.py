@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import nan, sin
 
 from hilbed.angles import wrap
-from hilbed.estimation.bearing_observers import Observer, State
+from hilbed.estimation.bearing_observers import AXIS, FARTHEST, NEAREST, Observer, State
 from hilbed.estimation.bearing_travel import Leg, travelled
 from hilbed.estimation.ways import Way, split
 from hilbed.types import Nanos
 
 
 class Track:
-    """An observer integrated from exposure to exposure, φ straight in between; then carried by odometry."""
+    """An observer integrated from exposure to exposure, φ straight in between; then carried by odometry.
+
+    `singular` counts measurements with the landmark on the robot's axis, which hardly tell its distance;
+    `held` those at which the distance was at its least or largest; `restarted` those before which the
+    covariance was not positive, and was that of the start afterwards.
+    """
 
     def __init__(self, observer: Observer, guess: float, step: float, memory: Nanos) -> None:
         """guess: of the distance (m); step (m) of integration; memory: how much of the way is kept."""
@@ -25,6 +30,7 @@ class Track:
         self._ahead: State = ()  # further on, after so many ways since
         self._carried = 0
         self._seen: tuple[Nanos, float | None] = (-1, None)
+        self.singular = self.held = self.restarted = 0
 
     @property
     def now(self) -> State | None:
@@ -66,12 +72,20 @@ class Track:
         if self._state is None:
             state, nis = self._observer.start(self._guess, phi), nan
         else:
-            state = self._through(self._state, before, phi)
-            nis = self._observer.nis(state, phi)
+            state = self._checked(self._through(self._state, before, phi))
+            nis = self._observer.nis(state, phi, sum(abs(way.distance) for way in before))
             state = self._observer.corrected(state, phi)
+        self.singular += abs(sin(phi)) < AXIS
         self._state, self._seen, self._since = state, (t, phi), after
         self._ahead, self._carried = state, 0
         return nis
+
+    def _checked(self, state: State) -> State:
+        """Returns the state as it can be gone on from, and counts what was wrong with it."""
+        sound = self._observer.sound(state)
+        self.restarted += sound != state
+        self.held += state[0] in (NEAREST, FARTHEST)
+        return sound
 
     def _carry(self, state: State, distance: float, turn: float) -> State:
         return travelled(self._observer, state, Leg(distance, turn), self._step)

@@ -29,7 +29,8 @@ class Bearings:
     Readings are taken at their exposure; one without a name goes to the landmark that is expected nearest to
     it. The estimate's landmark distance is NaN until both were seen. `ignored` counts what cannot be used:
     odometry and readings that are not finite, of another kind or beacon, nameless before both were seen, out
-    of order, too old or far ahead. Until both were seen the pose is the start as odometry carries it.
+    of order, too old or far ahead; for the other counts see `Track`. Until both were seen the pose is the
+    start as odometry carries it.
     """
 
     def __init__(self, spec: BearingsSpec, start: Pose) -> None:
@@ -42,8 +43,13 @@ class Bearings:
         self.ignored = 0
 
     def counts(self) -> dict[str, float]:
-        """Returns how much odometry and how many readings could not be used."""
-        return {"ignored": self.ignored}
+        """Returns how much could not be used, and what befell the observers of both landmarks."""
+        return {
+            "ignored": self.ignored,
+            "singular": sum(track.singular for track in self._tracks),
+            "held": sum(track.held for track in self._tracks),
+            "restarted": sum(track.restarted for track in self._tracks),
+        }
 
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""

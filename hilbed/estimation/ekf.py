@@ -26,7 +26,10 @@ class Ekf:
 
     A late reading rewinds the filter to its exposure and replays what came after, so the result is that
     of processing in order. `ignored` counts odometry and readings that cannot be used: not finite, of an
-    unknown kind or beacon, with a standard deviation that is not positive, or older than the memory.
+    unknown kind or beacon, with a standard deviation that is not positive, or older than the memory;
+    `touching` readings of a beacon that the sensor is believed to stand on; `restarted` how often round-off
+    left a covariance that is not positive, and that of the start took its place. What late readings make the
+    filter go over again counts again.
     """
 
     def __init__(
@@ -45,11 +48,12 @@ class Ekf:
         self._memory = nanos(spec.memory)
         self._timeline = Timeline(Node(-1, mean, covariance), self._memory)  # an exposure at 0 comes after it
         self._waiting: list[Measurement] = []
-        self.ignored = 0
+        self._unknowing = covariance
+        self.ignored = self.touching = self.restarted = 0
 
     def counts(self) -> dict[str, float]:
-        """Returns how much odometry and how many readings could not be used."""
-        return {"ignored": self.ignored}
+        """Returns how much could not be used, and what befell the filter."""
+        return {"ignored": self.ignored, "touching": self.touching, "restarted": self.restarted}
 
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""
@@ -169,10 +173,14 @@ class Ekf:
         noise = self._noise(measurement, expected.per_metre)
         v = model.difference(measurement.value, expected.value)
         nis = v * v / (belief.spread(expected) + noise)
+        self.touching += expected.touching
         measurement.innovation = Innovation(reading.t, nis, 1, nis <= self._gate)
         if nis > self._gate:
             return self._refuse(refused + 1)
         belief.correct(v, noise, expected)
+        if not belief.positive:
+            belief.P = self._unknowing
+            self.restarted += 1
         return 0
 
     def _refuse(self, refused: int) -> int:

@@ -30,13 +30,19 @@ class PoseFilter(ExtendedKalmanFilter):  # type: ignore[misc]
         """Predicts by an odometry increment (m, rad)."""
         self.x, self.P = predicted(self.x, self.P, (distance, turn), model)
 
+    @property
+    def positive(self) -> bool:
+        """Whether all variances are positive; NaN is not."""
+        return bool((self.P.diagonal() > 0.0).all())
+
     def spread(self, expected: Prediction) -> float:
-        """Returns the variance H P Hᵀ of a predicted reading."""
+        """Returns the variance H P Hᵀ of a predicted reading, at least 0 whatever round-off says."""
         g0, g1, g2 = expected.gradient
         (xx, xy, xt), (_, yy, yt), (_, _, tt) = self.P.tolist()
-        return float(
+        variance = (
             g0 * g0 * xx + g1 * g1 * yy + g2 * g2 * tt + 2 * (g0 * g1 * xy + g0 * g2 * xt + g1 * g2 * yt)
         )
+        return max(float(variance), 0.0)
 
     def correct(self, innovation: float, variance: float, expected: Prediction) -> None:
         """Updates by one scalar innovation whose noise has `variance`."""

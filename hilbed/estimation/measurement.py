@@ -13,11 +13,15 @@ Point = tuple[float, float]
 
 
 class Prediction(NamedTuple):
-    """A predicted scalar: its value, its gradient over (x, y, yaw), and m or rad per m of the beacon."""
+    """A predicted scalar: its value, its gradient over (x, y, yaw), and m or rad per m of the beacon.
+
+    touching: whether the sensor stands on the beacon, from where the gradient is not what it says.
+    """
 
     value: float
     gradient: tuple[float, float, float]
     per_metre: float
+    touching: bool
 
 
 class Model(NamedTuple):
@@ -47,7 +51,8 @@ def azimuth(state: Array, beacon: Point, mount: Point) -> Prediction:
     squared = max(dx * dx + dy * dy, NEAREST**2)
     gx, gy = dy / squared, -dx / squared
     value = wrap(atan2(dy, dx) - float(state[2]))
-    return Prediction(value, (gx, gy, gx * cx_yaw + gy * cy_yaw - 1.0), squared**-0.5)
+    gradient = gx, gy, gx * cx_yaw + gy * cy_yaw - 1.0
+    return Prediction(value, gradient, squared**-0.5, squared <= NEAREST**2)
 
 
 def distance(state: Array, beacon: Point, mount: Point) -> Prediction:
@@ -55,7 +60,7 @@ def distance(state: Array, beacon: Point, mount: Point) -> Prediction:
     dx, dy, cx_yaw, cy_yaw = _sight(state, beacon, mount)
     length = max(hypot(dx, dy), NEAREST)
     gx, gy = -dx / length, -dy / length
-    return Prediction(length, (gx, gy, gx * cx_yaw + gy * cy_yaw), 1.0)
+    return Prediction(length, (gx, gy, gx * cx_yaw + gy * cy_yaw), 1.0, length <= NEAREST)
 
 
 def _angle_between(a: float, b: float) -> float:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import sin
 
 import numpy as np
 
 from hilbed.clock import nanos
+from hilbed.estimation.bearing_observers import AXIS, FARTHEST, NEAREST
 from hilbed.estimation.bearing_specs import SurveySpec
 from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.no_covariance import NO_COVARIANCE
@@ -31,7 +33,9 @@ class SurveyEstimator:
     """Landmarks as in `Bearings`: 0 is the map's origin, 1 is up its y axis. Readings need their names.
 
     It starts from the first exposure with both; until then the pose is the start as odometry carries it.
-    So is the estimate's landmark distance unknown. `ignored` counts what cannot be used.
+    So is the estimate's landmark distance unknown. `ignored` counts what cannot be used; `singular` readings
+    of a landmark on the robot's axis, which hardly tell its distance; `held` those at which a distance was at
+    its least or largest; `restarted` how often the covariance was no longer positive: then it starts afresh.
     """
 
     def __init__(self, spec: SurveySpec, start: Pose) -> None:
@@ -46,11 +50,16 @@ class SurveyEstimator:
         self._t: Nanos = 0
         self._memory = nanos(spec.memory)
         self._waiting = Waiting(self._memory)
-        self.ignored = 0
+        self.ignored = self.singular = self.held = self.restarted = 0
 
     def counts(self) -> dict[str, float]:
-        """Returns how much odometry and how many readings could not be used."""
-        return {"ignored": self.ignored}
+        """Returns how much could not be used, and what befell the filter."""
+        return {
+            "ignored": self.ignored,
+            "singular": self.singular,
+            "held": self.held,
+            "restarted": self.restarted,
+        }
 
     def step(self, t: Nanos, odometry: Odometry, readings: Sequence[Reading]) -> Estimate:
         """Takes what has arrived by `t`; returns the belief at `t`, extrapolated beyond the odometry."""
@@ -96,8 +105,17 @@ class SurveyEstimator:
         before, self._since = split(self._since, reading.t)
         belief = self._through(self._belief, before)
         v, S = surprise(belief, landmark, phi, R)
-        self._belief, self._seen = corrected(belief, landmark, phi, R), reading.t
+        self.singular += abs(sin(phi)) < AXIS
+        self.held += (belief.a, belief.b)[landmark].r in (NEAREST, FARTHEST)
+        self._seen = reading.t
+        self._belief = self._checked(corrected(belief, landmark, phi, R))
         return Innovation(reading.t, v * v / S, 1, True)
+
+    def _checked(self, belief: Belief) -> Belief | None:
+        """Returns the belief, None where its covariance is not positive."""
+        positive = bool((belief.P.diagonal() > 0.0).all())
+        self.restarted += not positive
+        return belief if positive else None
 
     def _begin(self, reading: Reading) -> None:
         """Starts from two readings of one exposure; readings come in the order of their names."""

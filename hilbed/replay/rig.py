@@ -85,7 +85,7 @@ def rig_of(recording: Recording) -> tuple[Rig, Pose, Reference | None]:
         DisturbedBase(base, robot.limited, effects_of(upsets, Nowhere())),
         sensors,
         make_estimator(scenario.estimator, surroundings(scenario, spec.beacons, start)),
-        make_controller(scenario.controller, Guidance(reference, period, robot.command, robot.limited)),
+        make_controller(scenario.controller, Guidance(reference, period, robot)),
         NoPlant(),
         period,
         Cost(),

@@ -14,6 +14,7 @@ from hilbed.ports import Witness
 from hilbed.sensors.delivery import Delivery, DeliverySpec
 from hilbed.sensors.dropouts import Dropouts
 from hilbed.spec import NonNegative
+from hilbed.tally import counts_of
 from hilbed.types import Nanos, Pose, Reading, Rng, Truth
 from hilbed.vision.truth import SPURIOUS
 
@@ -93,6 +94,10 @@ class Direct:
     def read(self, t: Nanos) -> list[Reading]:
         """Returns the readings delivered up to and including t since the last call, oldest first."""
         return self._delivery.read(t)
+
+    def counts(self) -> dict[str, float]:
+        """Returns what could not be read, and why."""
+        return counts_of(self._look)
 
     def flush(self) -> None:
         """Has nothing under way that the witness has not been told."""

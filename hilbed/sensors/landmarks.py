@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from math import cos, inf, pi, sin
 from typing import Annotated, Literal
 
@@ -53,37 +53,50 @@ class RangeBearingSpec(LandmarkSpec):
 
 def bearing(spec: BearingSpec, beacons: Sequence[BeaconSpec]) -> Look:
     """Returns what there is to be read from a pose."""
-
-    def look(pose: Pose) -> list[Quantity]:
-        return [_azimuth(k, sight, spec.noise) for k, sight in in_sight(spec, beacons, pose)]
-
-    return look
+    return Landmarks(spec, beacons, lambda k, sight: [_azimuth(k, sight, spec.noise)])
 
 
 def range_bearing(spec: RangeBearingSpec, beacons: Sequence[BeaconSpec]) -> Look:
     """Returns what there is to be read from a pose: of each landmark its range, then its bearing."""
 
-    def look(pose: Pose) -> list[Quantity]:
-        found = []
-        for k, sight in in_sight(spec, beacons, pose):
-            found.append(Quantity("range", (sight.distance,), (spec.range_noise,), k, k))
-            found.append(_azimuth(k, sight, spec.bearing_noise))
+    def read(k: int, sight: Sight) -> list[Quantity]:
+        reach = Quantity("range", (sight.distance,), (spec.range_noise,), k, k)
+        return [reach, _azimuth(k, sight, spec.bearing_noise)]
+
+    return Landmarks(spec, beacons, read)
+
+
+class Landmarks:
+    """What there is to be read of the landmarks that are neither out of range nor touched.
+
+    `touching` counts those that would have been read, but that the sensor stood on.
+    """
+
+    def __init__(
+        self, spec: LandmarkSpec, beacons: Sequence[BeaconSpec], read: Callable[[int, Sight], list[Quantity]]
+    ) -> None:
+        """read: quantities of a landmark, from its index and its sight."""
+        self._mount = spec.mount
+        self._farthest = inf if spec.max_range is None else spec.max_range
+        self._beacons = beacons
+        self._read = read
+        self.touching = 0
+
+    def counts(self) -> dict[str, float]:
+        """Returns how often the sensor stood on a landmark."""
+        return {"touching": self.touching}
+
+    def __call__(self, pose: Pose) -> list[Quantity]:
+        """Reads from a pose of the robot, in the order of the landmarks."""
+        forward, left = self._mount
+        c, s = cos(pose.yaw), sin(pose.yaw)
+        x, y = pose.x + c * forward - s * left, pose.y + s * forward + c * left
+        found: list[Quantity] = []
+        for k, sight in enumerate(sights(self._beacons, x, y, pose.yaw)):
+            self.touching += sight.distance < TOUCHING
+            if TOUCHING <= sight.distance <= self._farthest:
+                found += self._read(k, sight)
         return found
-
-    return look
-
-
-def in_sight(
-    spec: LandmarkSpec, beacons: Sequence[BeaconSpec], pose: Pose
-) -> Iterator[tuple[int, Sight]]:  # fmt: skip
-    """Yields index and sight of the landmarks that are neither out of range nor touched."""
-    forward, left = spec.mount
-    c, s = cos(pose.yaw), sin(pose.yaw)
-    x, y = pose.x + c * forward - s * left, pose.y + s * forward + c * left
-    farthest = inf if spec.max_range is None else spec.max_range
-    for k, sight in enumerate(sights(beacons, x, y, pose.yaw)):
-        if TOUCHING <= sight.distance <= farthest:
-            yield k, sight
 
 
 def _azimuth(k: int, sight: Sight, std: float) -> Quantity:

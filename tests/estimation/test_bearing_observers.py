@@ -199,7 +199,7 @@ def test_the_sampled_filter_equals_a_textbook_filter() -> None:
         nis = (m - x[1]) ** 2 / (P[1, 1] + 1e-4)
         x, P = x + K * (m - x[1]), P - np.outer(K, P[1])
         state = travelled(filter_, state, Leg(0.05, 0.0), STEP)
-        assert filter_.nis(state, m) == pytest.approx(nis, rel=1e-6)
+        assert filter_.nis(state, m, 0.05) == pytest.approx(nis, rel=1e-6)
         state = filter_.corrected(state, m)
         assert state == pytest.approx((x[0], x[1], P[0, 0], P[0, 1], P[1, 1]), rel=1e-6, abs=1e-9)
 

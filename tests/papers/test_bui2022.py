@@ -113,7 +113,7 @@ def tracked(controller: Controller, start: Pose, noise: float, seed: int = 0) ->
     """Steering noise of a standard deviation (rad), held over each step, then limited to ±π/4."""
     robot, rng = Tricycle(TricycleSpec()), np.random.default_rng(seed)
     vehicle = Vehicle(robot.twist, robot.limited, lambda c: Command(c[0], c[1] + rng.normal(0.0, noise)))
-    steered = Steered(controller, robot.command)
+    steered = Steered(controller, robot)
     return run(Experiment(vehicle, start, PERIOD, 50 * NS), Known(), steered, pose_sensor)
 
 
@@ -207,7 +207,7 @@ def localised(seed: int, kind: str) -> tuple[Array, Array, Array]:
     else:
         estimator = DeadReckoning(DeadReckoningSpec(initial_std=INITIAL, odometry=NOISE), guess)
     experiment = Experiment(vehicle, start, PERIOD, 49 * NS)
-    law = Steered(OpenLoop(REFERENCE), robot.command)
+    law = Steered(OpenLoop(REFERENCE), robot)
     result = run(experiment, estimator, law, sighting(rng))
     covariance = np.array([e.covariance for e in result.estimates])
     nis = np.array([[i.nis for i in e.innovations] for e in result.estimates])

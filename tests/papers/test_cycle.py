@@ -28,7 +28,7 @@ def test_the_loop_runs_a_papers_experiment_as_it_runs_the_bench() -> None:
 
     def minds() -> tuple[DeadReckoning, Steered]:
         law = LyapunovTracking(LyapunovTrackingSpec(), reference)
-        return DeadReckoning(DeadReckoningSpec(), START), Steered(law, robot.command)
+        return DeadReckoning(DeadReckoningSpec(), START), Steered(law, robot)
 
     plant = KinematicPlant(START, vehicle)
     estimator, controller = minds()

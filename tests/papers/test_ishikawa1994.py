@@ -119,7 +119,7 @@ def test_figures_3_and_4_equal_an_integration(straight: bool, tolerance: float) 
 @pytest.mark.parametrize("yaw", [0.6, -0.8, pi - 0.5])
 def test_state_feedback_has_its_closed_form(speed: float, yaw: float) -> None:
     """e over the way along the line is (a + b x) exp(−2x) with both poles at −2, in either direction."""
-    law = Steered(PathFollowing(PathFollowingSpec(speed=speed)), TRICYCLE.command)
+    law = Steered(PathFollowing(PathFollowingSpec(speed=speed)), TRICYCLE)
     experiment = Experiment(VEHICLE, Pose(3.0, 1.0, yaw), MS, 3000 * MS)
     truth = run(experiment, Known(), law, pose_sensor).truth
     x, e = np.abs(truth[:, 0] - 3.0), truth[:, 1] - 1.5
@@ -131,7 +131,7 @@ def test_state_feedback_has_its_closed_form(speed: float, yaw: float) -> None:
 @pytest.mark.parametrize("speed", [1.0, -1.0])
 def test_state_feedback_equals_an_integration_with_the_input_held(speed: float) -> None:
     """(21) as printed, in z: F₂ = −4 ahead and +4 backwards; steering held over the cycle."""
-    law = Steered(PathFollowing(PathFollowingSpec(speed=speed)), TRICYCLE.command)
+    law = Steered(PathFollowing(PathFollowingSpec(speed=speed)), TRICYCLE)
     experiment = Experiment(VEHICLE, Pose(3.0, 1.0, -0.8), MS, 1000 * MS)
     result = run(experiment, Known(), law, pose_sensor)
     state = np.array((3.0, 1.0, -0.8))
@@ -145,7 +145,7 @@ def test_state_feedback_equals_an_integration_with_the_input_held(speed: float) 
 
 @pytest.mark.parametrize("spec", OBSERVERS[1:], ids=lambda spec: f"{spec.kind}-{getattr(spec, 'form', '')}")
 def test_figure_5_reverse_along_the_line_fed_by_an_observer(spec: BearingsSpec) -> None:
-    law = Steered(PathFollowing(PathFollowingSpec(speed=-1.0)), TRICYCLE.command)
+    law = Steered(PathFollowing(PathFollowingSpec(speed=-1.0)), TRICYCLE)
     result = estimated(spec, REVERSE, law)
     assert result.truth[-1, 0] < 0.0  # it has passed both landmarks, backwards
     assert abs(result.truth[-1, 1] - 1.5) < 5e-3
@@ -167,7 +167,7 @@ def test_figure_5_with_a_cameras_bearings(seed: int) -> None:
         del coming[: len(due)]
         return due
 
-    law = Steered(PathFollowing(PathFollowingSpec(speed=-1.0)), TRICYCLE.command)
+    law = Steered(PathFollowing(PathFollowingSpec(speed=-1.0)), TRICYCLE)
     estimator = Bearings(LuenbergerSpec(), REVERSE.start)
     truth = run(REVERSE._replace(period=10 * MS), estimator, law, camera).truth
     assert np.abs(truth[300:, 1] - 1.5).max() < 0.08

@@ -117,7 +117,7 @@ def test_a_tricycle_is_led_by_its_front_point_too() -> None:
     robot = Tricycle(TricycleSpec(wheelbase=0.3, max_steering=1.2))
     spec = FrontPointSpec(ahead=0.3, gain=1.0)
     start = Pose(0.0, -1.1, 0.2)
-    law = Steered(FrontPoint(spec, CIRCLE), robot.command)
+    law = Steered(FrontPoint(spec, CIRCLE), robot)
     experiment = Experiment(Vehicle(robot.twist, robot.limited), start, PERIOD, 20 * 10**9)
     result = run(experiment, Attitude(AttitudeSpec(gain=20.0, heading_error=0.3), start), law, position)
     z = front_point(tuple(result.truth[-1].tolist()), 0.3)

@@ -136,4 +136,4 @@ def test_any_controller_of_a_twist_drives_a_tricycle() -> None:
 
     robot = tricycle(wheelbase=2.0)
     believed = Estimate(0, np.full(3, 0.25), NO_COVARIANCE)
-    assert robot.twist(Steered(Turning(), robot.command).step(0, believed)) == pytest.approx((1.0, 0.25))
+    assert robot.twist(Steered(Turning(), robot).step(0, believed)) == pytest.approx((1.0, 0.25))
