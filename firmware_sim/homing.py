@@ -1,4 +1,7 @@
-"""Homing (CiA 402): where the axis stands, or by a switch: towards it fast, back over its edge slowly."""
+"""Homing (CiA 402): where the axis stands, or by a switch: towards it fast, back over its edge slowly.
+
+An axis that begins beyond the edge goes back fast first, so that a slow way is never a long one.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,9 @@ START: Final = 0x0010
 """Of the controlword: home; lowered before the end it interrupts."""
 _INPUTS, _METHOD, _PATIENCE = key(0x60FD), key(0x6098), key(0x2015)
 _FAST, _SLOW = key(0x6099, 1), key(0x6099, 2)
+
+
+_AWAY, _TOWARDS, _SLOWLY = range(3)  # the legs of a search
 
 
 class Method(NamedTuple):
@@ -45,12 +51,13 @@ class Homing:
 
     searching: whether the axis is on its way; failed: whether the last search found nothing in time."""
 
-    __slots__ = ("_back", "_method", "_place", "_ticks", "failed")
+    __slots__ = ("_leg", "_method", "_place", "_ticks", "failed")
 
     def __init__(self, place: Place) -> None:
         self._place = place
         self._method: Method | None = None
-        self._back = self.failed = False
+        self.failed = False
+        self._leg = _AWAY
         self._ticks = 0
 
     @property
@@ -77,15 +84,18 @@ class Homing:
         if method is None:
             return 0.0
         there = bool(place.values[_INPUTS] & method.input) is method.until
-        if self._back and not there:
+        if self._leg is _AWAY and not there:
+            self._leg = _TOWARDS
+        elif self._leg is _TOWARDS and there:
+            self._leg = _SLOWLY
+        elif self._leg is _SLOWLY and not there:
             place.set_home(counts)
             self._end()
             return 0.0
-        self._back |= there
         self._ticks += 1
         if 0 < place.values[_PATIENCE] <= self._ticks:
             self._give_up()
-        return self._speed(method)
+        return self._speed(method.direction)
 
     def rest(self, halted: bool) -> None:  # noqa: ARG002
         """An axis that is stopped does not go on by itself."""
@@ -93,18 +103,19 @@ class Homing:
 
     def _start(self, counts: int) -> None:
         place = self._place
-        place.homed = self.failed = self._back = False
+        place.homed = self.failed = False
         place.event = True
+        self._leg = _AWAY
         self._ticks = 0
         self._method = METHODS.get(place.values[_METHOD])
         if self._method is None:
             place.set_home(counts)
 
-    def _speed(self, method: Method) -> float:
-        """Returns the speed of this part of the search, rad/s in the encoder's direction."""
+    def _speed(self, towards: int) -> float:
+        """Returns the speed of this leg of the search, rad/s in the encoder's direction."""
         settings = self._place.settings
-        speed: float = self._place.values[_SLOW if self._back else _FAST] * abs(settings.unit)
-        direction = -method.direction if self._back else method.direction
+        speed: float = self._place.values[_SLOW if self._leg is _SLOWLY else _FAST] * abs(settings.unit)
+        direction = towards if self._leg is _TOWARDS else -towards
         return direction * settings.polarity * min(speed, settings.max_speed)
 
     def _end(self) -> None:

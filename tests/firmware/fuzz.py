@@ -25,6 +25,9 @@ def fuzz(frames: int, seed: int) -> tuple[Watched, Counter[State]]:
     for k in range(frames):
         watched.heed(t, noise.frame())
         if noise.random.random() < TICKS:
+            inputs = noise.inputs()
+            if inputs is not None:
+                watched.drive.read(inputs)
             watched.tick(t, noise.pins())
             ticks[watched.axis.state] += 1
             t += MILLISECOND
@@ -45,6 +48,7 @@ def main() -> None:
     print(f"{frames} frames, {ticks.total()} ticks, seed {seed}: every invariant held, {seconds:.0f} s")
     print("ticks in", ", ".join(f"{state.name} {count}" for state, count in ticks.most_common()))
     print(f"{len(watched.edges)} of {len(EDGES)} transitions, {watched.edges.total()} times")
+    print("ticks with power in mode", ", ".join(f"{mode} {n}" for mode, n in watched.modes.most_common()))
     print("sent:", ", ".join(f"{kind} {count}" for kind, count in sorted(watched.sent.items())))
     print("never taken:", ", ".join(f"{a.name}-{b.name}" for a, b in EDGES - set(watched.edges)) or "none")
     print(f"dropped for their length: {watched.drive.malformed}")

@@ -59,6 +59,7 @@ class Watched:
         assert isinstance(self.axis, WatchedAxis)
         self.edges = self.axis.edges = Counter()
         self.sent: Counter[str] = Counter()
+        self.modes: Counter[int] = Counter()  # ticks with power
         self._values = self.axis.values
 
     def heed(self, t: int, frame: Frame) -> None:
@@ -75,6 +76,7 @@ class Watched:
         assert self.drive.bridge_enabled or duty == 0
         if self.drive.bridge_enabled:
             self._check_duty(duty / 32767, pins)
+            self.modes[self._values[key(0x6061)]] += 1
         self._check(before)
 
     def _check_duty(self, duty: float, pins: Pins) -> None:
@@ -96,6 +98,8 @@ class Watched:
         most = values[key(0x607F)] * math.tau / values[key(0x2001)]
         assert abs(axis.speed_ref) <= most * (1 + 1e-12)
         assert axis.bridge_enabled or axis.speed_ref == 0.0
+        if axis.positioner.homing.searching:
+            assert (axis.state, values[key(0x6061)]) == (State.ENABLED, 6)
         assert values[key(0x1001)] & 1 or not axis.faulted
         if self.drive.outbox:
             self._check_sent(self.drive.outbox, {before, self.drive._node.state})

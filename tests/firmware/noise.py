@@ -12,10 +12,11 @@ from tests.firmware.wire import NODE, SUPPLY
 
 SDO = 0x600 + NODE
 SERVICES = (0x000, 0x080, 0x200 + NODE, 0x300 + NODE, SDO, 0x700 + NODE, 0x77F, 0x180 + NODE)
-WORDS = (0x06, 0x07, 0x0F, 0x0F, 0x02, 0x00, 0x80, 0x10F)
+WORDS = (0x06, 0x07, 0x0F, 0x0F, 0x1F, 0x1F, 0x3F, 0x5F, 0x02, 0x00, 0x80, 0x10F)
 HEADS = (0x23, 0x27, 0x2B, 0x2F, 0x22, 0x40, 0x40, 0x21, 0x20, 0x60, 0x70, 0x00, 0x01, 0x10, 0x80, 0xA4)
 OBJECTS = tuple(sorted(ENTRIES))
-BEHAVIOUR = tuple(k for k in OBJECTS if k >> 8 in (0x1029, 0x2013, 0x6007, *range(0x605A, 0x6080)))
+BEHAVIOUR = tuple(k for k in OBJECTS if k >> 8 in (0x1029, 0x2013, 0x6007, 0x2015, *range(0x605A, 0x6080)))
+MODES = (9, 9, 8, 6, 3, 1)
 SIZED = {1: 0x2F, 2: 0x2B, 4: 0x23}
 
 
@@ -28,17 +29,19 @@ def struct_head(head: int, where: int) -> bytes:
     return bytes((head,)) + (where >> 8).to_bytes(2, "little") + bytes((where & 0xFF,))
 
 
-# Reset, operational, mode CSV, then into operation; each controlword with a target and a SYNC.
-BRING_UP = (
-    Frame(0x000, bytes((129, NODE))),
-    sdo(0x2F, 0x606000, b"\x09"),
-    Frame(0x000, bytes((1, NODE))),
-    *(
-        frame
-        for word in (0x06, 0x07, 0x0F)
-        for frame in (Frame(0x200 + NODE, bytes((word, 0, 0xD4, 0x30, 0, 0))), Frame(0x080))
-    ),
-)
+def bring_up(mode: int, method: int) -> list[Frame]:
+    """Reset, operational, modes of operation and of homing, then into it; each controlword with a target."""
+    return [
+        Frame(0x000, bytes((129, NODE))),
+        sdo(0x2F, 0x606000, bytes((mode,))),
+        sdo(0x2F, 0x609800, bytes((method,))),
+        Frame(0x000, bytes((1, NODE))),
+        *(
+            frame
+            for word in (0x06, 0x07, 0x0F)
+            for frame in (Frame(0x200 + NODE, bytes((word, 0, 0xD4, 0x30, 0, 0))), Frame(0x080))
+        ),
+    ]
 
 
 class Pins(NamedTuple):
@@ -65,7 +68,7 @@ class Noise:
         source = self.random
         kind = source.random()
         if kind < 0.01:
-            self._script.extend(BRING_UP)
+            self._script.extend(bring_up(source.choice(MODES), source.choice((*range(17, 23), 37))))
         if kind < 0.3:
             return self._nonsense()
         if kind < 0.45:
@@ -94,6 +97,10 @@ class Noise:
         size = ENTRIES[where].type.size
         value = source.randbytes(4) if source.random() < 0.3 else bytes((source.randrange(12), 0, 0, 0))
         return sdo(SIZED.get(size, 0x23), where, value)
+
+    def inputs(self) -> int | None:
+        """Returns the digital inputs where one of them has changed, which is rare."""
+        return self.random.randrange(8) if self.random.random() < 0.005 else None
 
     def pins(self) -> Pins:
         """Returns the next pins: a wheel that turns anyhow, with a rare jump, sag or surge."""

@@ -29,6 +29,7 @@ def test_a_hundred_thousand_frames(seed: int) -> None:
     watched, ticks = fuzz(25_000, seed)
     assert len(watched.edges) > 0.7 * len(EDGES)  # the drive was not merely asleep
     assert all(ticks[state] for state in State if state is not State.NOT_READY)
+    assert set(watched.modes) == {0, 1, 3, 6, 8, 9}
     assert set(watched.sent) == {"heartbeat", "SDO", "EMCY", "PDO"}
 
 
