@@ -33,6 +33,7 @@ class Steered:
         command = self._robot.command(*asked)
         given = self._robot.twist(command)
         if not all(isclose(a, b, abs_tol=ROUNDING) for a, b in zip(asked, given, strict=True)):
-            self.limited += asked.v != 0.0
-            self.standing += asked.v == 0.0
+            standing = abs(asked.v) < ROUNDING
+            self.standing += standing
+            self.limited += not standing
         return command

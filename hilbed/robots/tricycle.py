@@ -17,6 +17,7 @@ STEERING = "steering"
 Twist = tuple[float, float]
 """Speed of the rear axle's midpoint (m/s) and yaw rate (rad/s)."""
 
+STANDSTILL = 1e-9  # m/s
 STEEPEST = 1.55  # rad, 88.8°: at 90° a rear drive would turn infinitely fast
 
 
@@ -63,10 +64,11 @@ def rear_drive(command: Command, d: float) -> Twist:
 def steering(twist: Twist, d: float) -> float:
     """Returns the angle γ = atan(w d / v) in [−π/2, π/2] that turns the axle as asked; (3.15) with atan.
 
-    At standstill a quarter turn towards w, as if about to move; 0 where nothing is asked.
+    At standstill a quarter turn towards w, as if about to move ahead; 0 where nothing is asked. The sign of
+    what a controller's rounding leaves of a zero says nothing.
     """
     v, w = twist
-    if v == 0.0:
+    if abs(v) < STANDSTILL:
         return copysign(pi / 2, w) if w else 0.0
     return atan(w * d / v)
 

@@ -82,6 +82,7 @@ def test_at_standstill_the_wheel_turns_and_waits(drive: str) -> None:
     assert robot.command(0.0, 0.0) == (0.0, 0.0)
     assert robot.command(0.0, 0.4) == (0.0, pi / 4)
     assert robot.command(0.0, -0.4) == (0.0, -pi / 4)
+    assert [robot.command(v, 0.4)[1] for v in (1e-17, -1e-17)] == [pi / 4] * 2, "a rounded zero has no sign"
     assert robot.twist(Command(0.0, 0.7)) == (0.0, 0.0)
     assert robot.travel([0.0] * (len(robot.drives) - 1) + [0.5]) == (0.0, 0.0)
 
