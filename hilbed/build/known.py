@@ -76,6 +76,8 @@ def _limited(node: Node, robot: RobotSpec) -> Node:
         return replace(node, settings={**braking, **node.settings})
     end = robot.max_steering * abs(node.counts_per_radian)
     ends = {"lowest": -end, "highest": end, "following_window": BEHIND * abs(node.counts_per_radian)}
+    if node.mode == "pp":
+        ends["profile_velocity"] = robot.max_steering_rate * abs(node.counts_per_radian)
     return replace(node, max_speed=robot.max_steering_rate, settings={**ends, **node.settings})
 
 

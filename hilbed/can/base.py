@@ -18,7 +18,7 @@ from hilbed.can.ears import Ears
 from hilbed.can.node import Node
 from hilbed.can.position_axis import axis_of
 from hilbed.can.specs import BusSpec
-from hilbed.can.station import stations
+from hilbed.can.stations import stations
 from hilbed.clock import MILLISECOND, nanos, seconds
 from hilbed.ports import Bus, Robot
 from hilbed.types import BusError, Command, Diverged, Nanos, Odometry

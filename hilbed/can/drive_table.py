@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import cache, lru_cache
 from itertools import product
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
@@ -29,6 +29,9 @@ OWN = "hilbed402"
 
 POSITION = "hilbed402-csp"
 """The table of the bench's own drive as one that holds a position."""
+
+PROFILE = "hilbed402-pp"
+"""The same for one that is given set-points."""
 
 TARGETS = ("target_velocity", "target_position")
 MEASURED = ("statusword", "velocity_actual", "position_actual")
@@ -193,7 +196,14 @@ def named_table(name: str) -> DriveTable:
 @cache
 def _bundled(name: str) -> DriveTable:
     """Reads a table that comes with hilbed and therefore holds."""
-    return DriveTable.model_validate(yaml.load((TABLES / f"{name}.yaml").read_bytes(), _LOADER))
+    return DriveTable.model_validate(_content(name))
+
+
+def _content(name: str) -> dict[str, Any]:
+    """Returns what is in a bundled table's file, and for the rest what is in the one that it is like."""
+    content: dict[str, Any] = yaml.load((TABLES / f"{name}.yaml").read_bytes(), _LOADER)
+    like = content.pop("like", None)
+    return content if like is None else {**_content(like), **content}
 
 
 @lru_cache(maxsize=16)

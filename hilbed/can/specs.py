@@ -7,14 +7,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from hilbed.can.drive_table import OWN, POSITION, load_table
+from hilbed.can.drive_table import OWN, POSITION, PROFILE, load_table
 from hilbed.can.node import Kind, Node
 from hilbed.spec import Finite, NonNegative, Positive, Spec
 from hilbed.types import ScenarioError
 
 BIT_RATES = (10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 800_000, 1_000_000)
-DEFAULT_TABLES = {"steering": POSITION}
-"""Of drives that hold a position; all others are of the type OWN."""
+DEFAULT_TABLES = {"steering": {"csp": POSITION, "pp": PROFILE}}
+"""Of drives that hold a position, by mode; all others are of the type OWN."""
 WIRE = "hilbed"
 """The wire's own name as an interface of python-can."""
 
@@ -63,7 +63,8 @@ class NodeSpec(Spec):
     (drive and motor are elsewhere, the simulated wheel follows the reported speed); id: 1 to 126 (by default
     its place among the robot's drives, from 1); axis: which one of a node that has several; table: of the
     drive's type; loop: of the speed, null where the table has no such setting; mode: csv (targets act at
-    once), pv (the drive ramps) or csp (it follows a position);
+    once), pv (the drive ramps), csp (it follows a position) or pp (it ramps from set-point to set-point);
+    homing: method of an axis that is homed, 37 (where it stands) or 17 to 22 (by a switch);
     counts_per_turn: of the encoder, at the wheel; current_limit: A; slew: rad/s² at the wheel, 0 for none;
     gains: by the names of the table's settings, such as kp, ki, slope.
     """
@@ -73,7 +74,8 @@ class NodeSpec(Spec):
     axis: Annotated[int, Field(ge=1, le=8)] = 1
     table: str = "hilbed402"
     loop: Literal["variable_structure", "pi", "relay"] | None = "variable_structure"
-    mode: Literal["csv", "pv", "csp"] = "csv"
+    mode: Literal["csv", "pv", "csp", "pp"] = "csv"
+    homing: Literal[17, 18, 19, 20, 21, 22, 37] | None = None
     counts_per_turn: Annotated[int, Field(ge=4, le=2**24)] | None = None
     current_limit: Positive | None = None
     slew: NonNegative | None = None
@@ -130,6 +132,7 @@ class NodeSpec(Spec):
             "counts_per_turn": self.counts_per_turn,
             "current_limit": self.current_limit,
             "slew": self.slew,
+            "homing": self.homing,
             **self.gains,
         }
         return {key: value for key, value in given.items() if value is not None}
@@ -158,7 +161,8 @@ def with_table(name: str, block: Any) -> Any:
     given = {"kind": block} if isinstance(block, str) else block
     if not isinstance(given, dict) or name not in DEFAULT_TABLES:
         return block
-    return {"table": DEFAULT_TABLES[name], **given}
+    tables = DEFAULT_TABLES[name]
+    return {"table": tables.get(given.get("mode", "csp"), POSITION), **given}
 
 
 def _unsuited(node: Node) -> list[str]:

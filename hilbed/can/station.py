@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from hilbed.can.axis import Axis
 from hilbed.can.cia402 import ENABLE_OPERATION, QUICK_STOP
@@ -53,11 +53,3 @@ class Station:
 def _name(value: MappedValue, axes: dict[int, Axis]) -> str:
     """Returns a name for what is filled in; the target of an axis that no robot uses stays zero."""
     return value.word if value.word == "controlword" or (value.axis or 1) in axes else ""
-
-
-def stations(axes: Iterable[Axis]) -> tuple[Station, ...]:
-    """Groups axes by their node."""
-    found: dict[int, list[Axis]] = {}
-    for axis in axes:
-        found.setdefault(axis.node.id, []).append(axis)
-    return tuple(map(Station, found.values()))

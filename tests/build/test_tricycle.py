@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
-from math import cos, hypot, pi, tan
+from math import cos, hypot, pi, sin, tan
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from hilbed.poses import moved
 from hilbed.record.notes import Notes
 from hilbed.scenario.load import load
 from hilbed.types import Command, Odometry, Pose, ScenarioError
+from tests.firmware.test_course import trapezoid
 
 PERIOD = 10_000_000
 TYPES = ({"drive": "front"}, {"drive": "rear"}, {"drive": "rear", "differential": False})
@@ -44,7 +45,7 @@ def scenario(folder: Path, robot: dict[str, Any], **blocks: Any) -> str:
 def bench(folder: Path, robot: dict[str, Any], **blocks: Any) -> Iterator[Bench]:
     made = build(load(scenario(folder, robot, **blocks)), Notes(), Cost())
     try:
-        made.boot()
+        made.boot(lambda: None)
         yield made
     finally:
         made.close()
@@ -131,6 +132,37 @@ def test_a_steering_axis_that_is_held_fast_stops_with_a_fault(tmp_path: Path) ->
     with bench(tmp_path, {"drive": "front"}, disturbances=[jam]) as made:
         Drive(made).go(Command(0.0, 0.5), 2.0)
         assert any("steering" in event and "8611" in event for event in made.events())
+
+
+def test_in_profile_position_mode_it_ramps_to_its_set_points(tmp_path: Path) -> None:
+    """A jump of the command is one set-point: the axis takes the trapezoid of 6081, 6083 and 6084."""
+    nodes = {"steering": {"mode": "pp", "gains": {"acceleration": 42_000, "deceleration": 42_000}}}
+    with bench(tmp_path, {"drive": "front", "max_steering_rate": 1.0}, nodes=nodes) as made:
+        drive = Drive(made)
+        drive.go(Command(0.0, 0.7), 1.5)
+        angle = made.ticks(0)["tick/drive/steering/angle"]
+        expected = [trapezoid(0.7, 1.0, 4.0, 4.0, 1e-3 * k) for k in range(1400)]
+        # The order is on its way for about a millisecond, and the axis some more behind its demand.
+        late = min(range(30), key=lambda k: abs(angle[k : k + 1400] - expected).max())
+        assert abs(angle[late : late + 1400] - expected).max() < 0.02
+        assert 0 < late < 20
+        assert drive.odometry[-1].drives["steering"].angle_measured == pytest.approx(0.7, abs=2e-3)
+        drive.go(Command(0.0, -0.3), 1.5)
+        assert made.ticks(0)["tick/drive/steering/angle"][-1] == pytest.approx(-0.3, abs=2e-3)
+        assert made.events() == []
+
+
+@pytest.mark.parametrize(("mode", "lag"), [("csp", 0.02), ("pp", 0.07)])
+def test_the_angle_follows_its_reference_in_either_mode(tmp_path: Path, mode: str, lag: float) -> None:
+    """A sine: CSP is as late as a synchronous order and the drive are; the handshake takes cycles more."""
+    with bench(tmp_path, {"drive": "front"}, nodes={"steering": {"mode": mode}}) as made:
+        drive = Drive(made)
+        for k in range(200):
+            drive.go(Command(0.3, 0.5 * sin(pi * 0.01 * k)), 0.01)
+        log = made.ticks(0)
+        t, angle = log["tick/t"][500:], log["tick/drive/steering/angle"][500:]
+        found = np.polyfit(0.5 * pi * np.cos(pi * t), angle - 0.5 * np.sin(pi * t), 1)[0]
+        assert -found == pytest.approx(lag, abs=0.01)
 
 
 def test_in_place_it_steers_and_stays(tmp_path: Path) -> None:

@@ -61,7 +61,10 @@ def test_everything_wrong_is_told_at_once() -> None:
         ({"kind": "virtual"}, "'simulated', 'ecu' or 'real'"),
         ({"kind": "simulated", "id": 0}, "greater than or equal to 1"),
         ({"id": 127}, "less than or equal to 126"),
-        ({"table": "epos4"}, "no drive table 'epos4'; known: hilbed402, hilbed402-csp, zlac8015d"),
+        (
+            {"table": "epos4"},
+            "no drive table 'epos4'; known: hilbed402, hilbed402-csp, hilbed402-pp, zlac8015d",
+        ),
         ({"table": "../hilbed402"}, "no drive table"),
         ({"loop": "pid"}, "variable_structure"),
         ({"gains": {"kq": 1.0}}, "hilbed402 has no 'kq'; it has .*kp"),
