@@ -241,7 +241,8 @@ def tracked(reference: Callable[[float], tuple[Place, float]]) -> Expected:
         rows.append(x)
         (px, py, course), w = reference(0.01 * k)
         ahead, R = rotation(course), rotation(x[3])
-        wanted = ahead @ (0.3, 0.1 * w) - (x[:2] + 0.1 * R[:, 0] - (px, py) - 0.1 * ahead[:, 0])
+        z = x[:2] + 0.1 * rotation(x[2])[:, 0]  # measured, by a marker
+        wanted = ahead @ (0.3, 0.1 * w) - (z - (px, py) - 0.1 * ahead[:, 0])
         v, aside = R.T @ wanted
         x = integrated(loop_rates(v, aside / 0.1), x, 0.01)
     found = np.array(rows)
