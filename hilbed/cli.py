@@ -105,8 +105,9 @@ def _parser() -> argparse.ArgumentParser:
     paper = _command(commands, "paper", _paper, "run all experiments of a paper and write its page")
     paper.add_argument("paper", metavar="NAME", help="such as lages2017")
     paper.add_argument("--out", type=Path, metavar="DIR", help="folder of page and runs (runs/paper-NAME)")
-    paper.add_argument("--force", action="store_true", help="replace an existing page and its runs")
+    paper.add_argument("--force", action="store_true", help="run anew what the folder holds already")
     paper.add_argument("--ideal", action="store_true", help="leave the twins on the bench out")
+    paper.add_argument("--seeds", type=int, metavar="N", help="runs a scenario behind tables of final poses")
     paper.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
 
     _command(commands, "list", _list, "list the bundled scenarios")
@@ -164,9 +165,11 @@ def _sweep(options: Options) -> int:
 
 
 def _paper(options: Options) -> int:
+    from hilbed.paper.command import Options as Wanted
     from hilbed.paper.command import paper
 
-    return paper(options.paper, options.out, options.jobs, options.ideal, options.force)
+    asked = Wanted(options.out, options.jobs, options.ideal, options.seeds, options.force)
+    return paper(options.paper, asked)
 
 
 def _list(_: Options) -> int:

@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from hilbed.criteria.consistency import spread
-from hilbed.criteria.pose import largest, rms
+from hilbed.criteria.pose import largest, rms, wrapped
 from hilbed.criteria.signals import Column, Missing, Signals
 
 SETTLED = 0.02  # of the reference: the band in which a speed counts as recovered
@@ -16,11 +16,13 @@ STEADY = 0.5  # s at the end of the window, over which a duty's chatter is taken
 
 def speed_rms_error(signals: Signals, drive: str) -> float:
     """Speed minus its reference, root mean square."""
+    _turns_a_wheel(signals, drive)
     return rms(signals.drive(drive, "speed") - signals.drive(drive, "speed_ref"))
 
 
 def load_dip(signals: Signals, drive: str) -> float:
     """Largest drop of the speed below its reference while a load torque is on."""
+    _turns_a_wheel(signals, drive)
     loaded = under_load(signals, drive)
     return largest(np.maximum(_behind(signals, drive)[loaded], 0.0))
 
@@ -30,6 +32,7 @@ def load_recovery(signals: Signals, drive: str) -> float:
 
     Infinite where it does not while the load is on.
     """
+    _turns_a_wheel(signals, drive)
     loaded = under_load(signals, drive)
     t = signals.drive_time(drive)[loaded]
     band = SETTLED * np.abs(signals.drive(drive, "speed_ref")[loaded])
@@ -51,6 +54,7 @@ def duty_chatter(signals: Signals, drive: str) -> float:
 
 def step_overshoot(signals: Signals, drive: str) -> float:
     """How far the speed passes the last reference of the window, as a fraction of the way to it."""
+    _turns_a_wheel(signals, drive)
     speed, target = signals.drive(drive, "speed"), signals.drive(drive, "speed_ref")
     if not len(speed):
         raise Missing("the window is empty")
@@ -60,8 +64,14 @@ def step_overshoot(signals: Signals, drive: str) -> float:
     return max(0.0, largest((speed - target[-1]) / way))
 
 
+def angle_rms_error(signals: Signals, drive: str) -> float:
+    """Angle of a steering axis minus its reference, root mean square."""
+    return rms(wrapped(signals[f"drive/{drive}/angle"] - signals[f"drive/{drive}/angle_ref"]))
+
+
 def slip_max(signals: Signals, drive: str) -> float:
     """Largest speed of the wheel's surface against the ground."""
+    _turns_a_wheel(signals, drive)
     return largest(np.abs(signals.drive(drive, "slip")))
 
 
@@ -73,6 +83,12 @@ def current_max(signals: Signals, drive: str) -> float:
 def duty_max(signals: Signals, drive: str) -> float:
     """Largest duty."""
     return largest(np.abs(signals.drive(drive, "duty")))
+
+
+def _turns_a_wheel(signals: Signals, drive: str) -> None:
+    """Raises Missing for a steering axis: its speed is its drive's own affair, and it does not roll."""
+    if f"drive/{drive}/angle_ref" in signals:
+        raise Missing(f"{drive} is a steering axis, which follows an angle")
 
 
 def under_load(signals: Signals, drive: str) -> slice:

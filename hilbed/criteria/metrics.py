@@ -92,6 +92,7 @@ _DRIVE_UNITS = {
     "load_recovery": "s",
     "duty_chatter": "",
     "step_overshoot": "",
+    "angle_rms_error": "rad",
     "slip_max": "m/s",
     "current_max": "A",
     "duty_max": "",

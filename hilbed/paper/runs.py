@@ -5,79 +5,117 @@ from __future__ import annotations
 import multiprocessing
 import signal
 from collections import deque
-from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from hilbed.console import end_progress, progress
+from hilbed.paper.kept import finished
+from hilbed.paper.plan import End, Experiment
 from hilbed.types import HilbedError, Pose
 
-
-class Experiment(NamedTuple):
-    """A scenario to be run and kept in a folder."""
-
-    scenario: str
-    folder: Path
+KILLED = "a process has ended before its run: killed, or out of memory?"
 
 
-class End(NamedTuple):
-    """A scenario of which only the true pose at the end is asked."""
+class Done(NamedTuple):
+    """How a run ended: exit status, why it did not pass, the traceback of an internal error.
 
-    scenario: str
-    seed: int
+    kept: whether it was there already.
+    """
+
+    status: int
+    reason: str = ""
+    trace: str = ""
+    kept: bool = False
 
 
-def perform_all(
-    experiments: Sequence[Experiment], ends: Sequence[End], jobs: int
-) -> tuple[dict[str, int], dict[End, Pose]]:
-    """Runs everything; returns the exit status of each scenario and the final pose of each end."""
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(max(jobs, 1), mp_context=context, initializer=_deaf) as pool:
+@dataclass
+class Results:
+    """What has come out so far; interrupted: whether the end was asked for; lost: what could not be run."""
+
+    runs: dict[str, Done] = field(default_factory=dict)
+    ends: dict[End, Pose] = field(default_factory=dict)
+    lost: list[str] = field(default_factory=list)
+    interrupted: bool = False
+
+    def take(self, what: Experiment | End, future: Future[Any]) -> None:
+        """Takes the result of a run, or notes why there is none."""
         try:
-            return _gather(experiments, ends, pool)
+            if isinstance(what, Experiment):
+                self.runs[what.name] = future.result()
+            else:
+                self.ends[what] = future.result()
+        except BrokenExecutor:
+            if KILLED not in self.lost:
+                self.lost.append(KILLED)
+        except Exception as error:  # of one run: the others still count
+            name = what.name if isinstance(what, Experiment) else f"{what.scenario}, seed {what.seed}"
+            self.lost.append(f"{name}: {error if isinstance(error, HilbedError) else repr(error)}")
+
+
+def perform_all(experiments: Sequence[Experiment], ends: Sequence[End], jobs: int, force: bool) -> Results:
+    """Runs everything, with a line of progress; what is interrupted or breaks leaves the rest as it is.
+
+    force: also what an earlier run has left in its folder.
+    """
+    results, context = Results(), multiprocessing.get_context("spawn")
+    work: list[tuple[Experiment | End, Callable[[], Any]]] = [
+        *((one, partial(run, one, force)) for one in experiments),
+        *((one, partial(final_pose, one)) for one in ends),
+    ]
+    with ProcessPoolExecutor(min(jobs, len(work)) or 1, mp_context=context, initializer=_deaf) as pool:
+        try:
+            futures = {pool.submit(task): what for what, task in work}
+            for done, future in enumerate(as_completed(futures), 1):
+                results.take(futures[future], future)
+                progress(f"paper: {done} of {len(futures)} runs")
         except KeyboardInterrupt:
+            results.interrupted = True
             for process in multiprocessing.active_children():
                 process.terminate()
             pool.shutdown(wait=False, cancel_futures=True)
-            raise
         finally:
             end_progress()
+    return results
 
 
 def _deaf() -> None:
-    """Leaves Ctrl-C to the process that leads."""
+    """Leaves Ctrl-C to the process that leads; SIGTERM ends the process at once."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
-def _gather(
-    experiments: Sequence[Experiment], ends: Sequence[End], pool: Executor
-) -> tuple[dict[str, int], dict[End, Pose]]:
-    runs = {one.scenario: pool.submit(run, one) for one in experiments}
-    finals = {one: pool.submit(final_pose, one) for one in ends}
-    futures: list[Any] = [*runs.values(), *finals.values()]
-    for done, _ in enumerate(as_completed(futures), 1):
-        progress(f"paper: {done} of {len(futures)} runs")
-    return _results(runs), _results(finals)
+def run(experiment: Experiment, force: bool) -> Done:
+    """Runs a scenario into its folder where it is not there already.
 
-
-def _results(futures: Mapping[Any, Any]) -> dict[Any, Any]:
-    return {key: future.result() for key, future in futures.items()}
-
-
-def run(experiment: Experiment) -> int:
-    """Runs a scenario into its folder, report and all, and returns its exit status."""
-    from hilbed.record.folder import RunFolder
-    from hilbed.report import write_report
+    A report is written as well, but for those of many in which a value varies.
+    """
+    from hilbed.record.folder import REPORT, RunFolder
     from hilbed.runner import perform
     from hilbed.scenario.load import load
 
-    loaded = load(experiment.scenario, ["record=signals"])
+    loaded = load(experiment.scenario, [*experiment.settings, "record=signals"])
+    passed = None if force else finished(experiment.folder, loaded)
+    if passed is not None and (experiment.settings or (experiment.folder / REPORT).exists()):
+        return Done(0 if passed else 1, kept=True)
     outcome = perform(loaded, RunFolder(experiment.folder, force=True))
-    if outcome.trace:
-        raise HilbedError(f"{experiment.scenario}: {outcome.verdict['reason']}\n{outcome.trace}")
-    write_report(experiment.folder)
-    return outcome.status
+    report = "" if experiment.settings else _reported(experiment.folder)
+    reasons = (str(outcome.verdict["reason"]), report)
+    return Done(outcome.status, "; ".join(filter(None, reasons)), outcome.trace)
+
+
+def _reported(folder: Path) -> str:
+    """Writes the report of a run; returns why it could not, else nothing."""
+    from hilbed.report import write_report
+
+    try:
+        write_report(folder)
+    except HilbedError as error:
+        return str(error)
+    return ""
 
 
 def final_pose(end: End) -> Pose:

@@ -47,7 +47,8 @@ def compared(replayed: Signals) -> list[str]:
 
 def _times(name: str, recorded: Signals, replayed: Signals) -> npt.NDArray[Any]:
     """Returns the times (s) of a column's rows, of the longer side."""
-    column = "nis/t" if name.startswith("nis/") else "t"
+    own = name.partition("/")[0] + "/t"
+    column = own if own in ("nis/t", "cloud/t") else "t"
     sides = [side.get(column, np.empty(0)) for side in (recorded, replayed)]
     return max(sides, key=len)
 

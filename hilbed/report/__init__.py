@@ -38,10 +38,12 @@ def _summary(run: Run) -> str:
 def _figures(run: Run) -> str:
     from hilbed.report import (
         bus_figures,
+        cloud_figures,
         drive_figures,
         pose_figures,
         position_figures,
         sensor_figures,
+        state_figures,
         style,
         time_figures,
     )
@@ -50,7 +52,11 @@ def _figures(run: Run) -> str:
         cards = [
             page.card("Path", pose_figures.path(run)),
             page.card("Error of the estimate", pose_figures.errors(run)),
+            page.card("Distance of the landmarks", state_figures.landmark(run)),
+            page.card("Observability", state_figures.observability(run)),
+            page.card("Clouds", cloud_figures.clouds(run)),
             page.card("Wheel speeds", drive_figures.speeds(run)),
+            page.card("Steering angle", drive_figures.steering(run)),
             page.card("Duties, currents, loads", drive_figures.efforts(run)),
             page.card("Distance to truth", pose_figures.tracking(run)),
             page.card("Slip: surface of the wheel against the ground", drive_figures.slip(run)),

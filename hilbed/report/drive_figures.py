@@ -9,8 +9,9 @@ from hilbed.report.run import Run
 
 
 def speeds(run: Run) -> str | None:
-    """Returns each wheel's speed over its reference; None without drives."""
+    """Returns each wheel's speed over its reference; None without driven wheels."""
     names = [name for name in run.signals.drives() if _has(run, name, "speed_ref")]
+    names = [name for name in names if not _steers(run, name)]
     if not names:
         return None
     figure, axes = style.sheet(len(names), 1.2 + 1.6 * len(names))
@@ -24,6 +25,29 @@ def speeds(run: Run) -> str | None:
         style.legend(one, 12.0 if one is axes[0] else 1.0)
     style.on_time(axes, run.signals["t"], run.spans)
     return style.svg(figure, "wheel speeds and references")
+
+
+def steering(run: Run) -> str | None:
+    """Returns the angle of a steering axis over its reference, and their difference; None without one."""
+    names = [name for name in run.signals.drives() if _steers(run, name)]
+    if not names:
+        return None
+    t, reference = run.signals["t"], run.signals[f"drive/{names[0]}/angle_ref"]
+    angle = run.signals.get(f"drive/{names[0]}/angle", run.signals.get(f"drive/{names[0]}/angle_measured"))
+    assert angle is not None
+    figure, axes = style.sheet(2, 3.6)
+    for column, colour, width, label in (
+        (reference, "reference", 2.6, "reference"), (angle, "estimate", 0.9, names[0]),
+    ):  # fmt: skip
+        thin_t, thin = style.thinned(t, np.degrees(column))
+        axes[0].plot(thin_t, thin, color=style.STAND_IN[colour], linewidth=width, label=label)
+    axes[0].set_ylabel("angle  [°]")
+    thin_t, error = style.thinned(t, np.degrees(angle - reference))
+    axes[1].plot(thin_t, error, color=style.STAND_IN["bad"])
+    axes[1].set_ylabel("angle − ref.  [°]")
+    style.legend(axes[0])
+    style.on_time(axes, t, run.spans)
+    return style.svg(figure, "steering angle and its reference")
 
 
 def efforts(run: Run) -> str | None:
@@ -55,6 +79,10 @@ def _stacked(run: Run, fields: tuple[tuple[str, str, float, str], ...], label: s
     style.legend(axes[0])
     style.on_time(axes, run.signals["t"], run.spans)
     return style.svg(figure, label)
+
+
+def _steers(run: Run, drive: str) -> bool:
+    return f"drive/{drive}/angle_ref" in run.signals
 
 
 def _has(run: Run, drive: str, field: str) -> bool:

@@ -8,6 +8,7 @@ from hilbed.report import style
 from hilbed.report.run import Run
 
 _STATES = (("x  [m]", 0), ("y  [m]", 1), ("yaw  [rad]", 2))
+_POINTS = 600  # of a path at which the rank is looked at
 _SHOWN = ("reference", "truth", "estimate")
 
 
@@ -20,7 +21,7 @@ def states(run: Run) -> str:
             values = signals[name][:, column]
             if np.isfinite(values).any():
                 t, thin = style.thinned(signals["t"], values)
-                axis.plot(t, _unjoined(thin) if column == 2 else thin, color=style.STAND_IN[name], label=name)
+                axis.plot(t, unjoined(thin) if column == 2 else thin, color=style.STAND_IN[name], label=name)
         axis.set_ylabel(label)
     style.legend(axes[0])
     style.on_time(axes, signals["t"], run.spans)
@@ -30,15 +31,18 @@ def states(run: Run) -> str:
 def commands(run: Run) -> str:
     """Returns both components of the command."""
     signals = run.signals
-    tricycle = "kind: tricycle" in run.scenario
-    labels = ("v  [m/s]", "γ  [rad]" if tricycle else "ω  [rad/s]")
     figure, axes = style.sheet(2, 3.2)
-    for axis, label, values in zip(axes, labels, signals["command"].T, strict=True):
+    for axis, label, values in zip(axes, command_labels(run), signals["command"].T, strict=True):
         t, thin = style.thinned(signals["t"], values)
         axis.plot(t, thin, color=style.STAND_IN["estimate"])
         axis.set_ylabel(label)
     style.on_time(axes, signals["t"], run.spans)
     return style.svg(figure, "commands over time")
+
+
+def command_labels(run: Run) -> tuple[str, str]:
+    """Returns what the two components of a command are, by the kind of robot."""
+    return "v  [m/s]", "γ  [rad]" if "kind: tricycle" in run.scenario else "ω  [rad/s]"
 
 
 def landmark(run: Run) -> str | None:
@@ -49,39 +53,52 @@ def landmark(run: Run) -> str | None:
     figure, (axes,) = style.sheet(1, 2.2)
     t, thin = style.thinned(signals["t"], signals["landmark_distance"])
     axes.plot(t, thin, color=style.STAND_IN["estimate"], label="estimate")
-    true = np.hypot(*(signals["beacons"][1] - signals["beacons"][0]))
-    axes.axhline(true, color=style.STAND_IN["truth"], label="truth")
+    axes.axhline(landmark_distance(run), color=style.STAND_IN["truth"], linestyle=":", label="truth")
     axes.set_ylabel("l  [m]")
     style.legend(axes)
     style.on_time([axes], signals["t"], run.spans)
     return style.svg(figure, "distance of the landmarks")
 
 
+def landmark_distance(run: Run) -> float:
+    """Returns the true distance of the two landmarks, m."""
+    return float(np.hypot(*(run.signals["beacons"][1] - run.signals["beacons"][0])))
+
+
 def observability(run: Run) -> str | None:
     """Returns how well bearings tell the state along the true path; None where no landmark is looked for.
 
-    The determinant of the four-state rank condition without steering: it passes through zero where the
-    robot's axis passes through a landmark.
+    Above the four-state rank condition without steering, |det|; below the smallest singular value of the
+    gradients without and with steering. Both are near zero where the robot's axis passes through a landmark.
     """
     signals = run.signals
     if "landmark_distance" not in signals:
         return None
-    from hilbed.estimation.observability import full_determinant
+    from hilbed.estimation.observability import full_determinant, full_rows
+    from hilbed.estimation.sights import Survey
 
-    true = np.hypot(*(signals["beacons"][1] - signals["beacons"][0]))
-    path = np.column_stack((signals["truth"], np.full(len(signals["t"]), true)))
-    figure, (axes,) = style.sheet(1, 2.2)
-    t, thin = style.thinned(signals["t"], full_determinant(path))
-    axes.plot(t, thin, color=style.STAND_IN["truth"])
-    axes.axhline(0.0, color=style.STAND_IN["bad"], linewidth=0.8)
-    axes.set_yscale("symlog", linthresh=1e-3)
-    axes.set_ylabel("determinant  [1/m⁵]")
-    style.on_time([axes], signals["t"], run.spans)
+    true, step = landmark_distance(run), max(1, len(signals["t"]) // _POINTS)
+    path = np.column_stack((signals["truth"], np.full(len(signals["t"]), true)))[::step]
+    t = signals["t"][::step]
+    figure, axes = style.sheet(2, 3.6)
+    axes[0].plot(t, np.abs(full_determinant(path)), color=style.STAND_IN["truth"])
+    axes[0].set_ylabel("|det|  [1/m⁵]")
+    for steering, colour, label in ((False, "truth", "straight on"), (True, "estimate", "steering")):
+        values = [
+            np.linalg.svd(full_rows(Survey(*state), steering), compute_uv=False)[-1]
+            for state in path.tolist()
+        ]
+        axes[1].plot(t, values, color=style.STAND_IN[colour], label=label)
+    axes[1].set_ylabel("smallest σ")
+    for axis in axes:
+        axis.set_yscale("log")
+    style.legend(axes[1], 2.0)
+    style.on_time(axes, signals["t"], run.spans)
     return style.svg(figure, "observability along the path")
 
 
-def _unjoined(yaw: style.Column) -> style.Column:
-    """Returns yaw with a gap where it wraps."""
+def unjoined(yaw: style.Column) -> style.Column:
+    """Returns yaw (N,) with a gap where it wraps."""
     jumps = np.flatnonzero(np.abs(np.diff(yaw)) > np.pi) + 1
     gaps = yaw.copy()
     gaps[jumps] = np.nan

@@ -130,12 +130,19 @@ def on_time(axes: Sequence[Axes], t: np.ndarray, spans: Sequence[Span]) -> None:
             )  # fmt: skip
 
 
+_ROW, _HANDLE = 70, 5  # characters that fit into a row of a legend, and that a line and its gaps take
+
+
 def legend(axes: Axes, lift: float = 12.0) -> None:
-    """Puts the legend in one row above the axes, `lift` points up: over the letters of the disturbances."""
+    """Puts the legend above the axes, `lift` points up: over the letters of the disturbances.
+
+    It is one row, or more where the names do not fit into one.
+    """
     from matplotlib.transforms import ScaledTranslation
 
     place = axes.transAxes + ScaledTranslation(0.0, lift / 72, axes.figure.dpi_scale_trans)
-    columns = len(axes.get_legend_handles_labels()[1])
+    widths = [len(label) + _HANDLE for label in axes.get_legend_handles_labels()[1]]
+    columns = len(widths) if sum(widths) <= _ROW else max(_ROW // max(widths), 1)
     axes.legend(
         loc="lower right", bbox_to_anchor=(1.0, 1.0), bbox_transform=place, ncols=columns, columnspacing=1.2
     )

@@ -139,6 +139,20 @@ def test_overshoot_of_a_second_order_step_is_that_of_the_textbook(damping: float
     assert measure(drive(speed), "step_overshoot") == pytest.approx(expected, abs=1e-4)
 
 
+def test_a_steering_axis_is_judged_by_its_angle_alone() -> None:
+    run = drive(np.linspace(0.0, 6.0, 1000))
+    assert {"left.step_overshoot", "left.slip_max", "left.speed_rms_error"} <= set(all_metrics(run))
+    reference = np.full(100, 3.1)
+    run |= {"drive/left/angle_ref": reference, "drive/left/angle": np.full(100, 0.03 + 3.1 - 2 * np.pi)}
+    found = all_metrics(run)
+    assert found["left.angle_rms_error"] == pytest.approx(0.03)
+    meaningless = ("speed_rms_error", "load_dip", "load_recovery", "step_overshoot", "slip_max")
+    assert not {f"left.{name}" for name in meaningless} & set(found)
+    assert {"left.duty_chatter", "left.current_max", "left.duty_max"} <= set(found)
+    with pytest.raises(Missing, match="left is a steering axis"):
+        measure(run, "step_overshoot", "left")
+
+
 def test_chatter_is_taken_over_the_end_of_the_window() -> None:
     run = drive(np.full(2000, 5.0))
     run["tick/drive/left/duty"] = np.r_[np.arange(1000) * 1.0, np.tile([0.1, 0.3], 500)]
@@ -186,7 +200,7 @@ def test_every_metric_is_described_and_comes_out_of_a_full_run() -> None:
     missing = [name for name in METRICS if name not in found and f"left.{name}" not in found]
     simulated = ["missed_deadlines", "lateness_p99", "lateness_max"]
     sensed = ["range_bias", "range_std", "position_count", "position_rms"]
-    assert missing == ["landmark_distance_error_max", *sensed, *simulated]
+    assert missing == ["landmark_distance_error_max", *sensed, *simulated, "angle_rms_error"]
     assert all(np.isfinite(value) for value in found.values())
     assert all(metric.about.endswith(".") for metric in METRICS.values())
 
