@@ -8,7 +8,6 @@ from typing import get_args
 
 import pytest
 
-from hilbed.build.minds import CONTROLLERS, ESTIMATORS
 from hilbed.can.specs import NodeSpec
 from hilbed.control import ReferenceSpec
 from hilbed.runner import perform
@@ -19,11 +18,6 @@ from tests.build.scenarios import small
 from tests.build.test_kinds import kinds
 
 BLOCKS = {"waypoints": {"points": [[0, 0], [2, 0], [3, 2]]}}  # the others need no more than their kind
-SIGHTS = (
-    "sensors.gps={kind: position, latency: 0}",
-    "sensors.fix={kind: position, yaw_noise: 0.01, latency: 0}",
-)
-START = "robot.start=[2, -1, 0.3]"
 IDEAL = ("plant={kind: kinematic, beacons: [{at: [3, 0]}]}",)
 LOOPS = get_args(get_args(NodeSpec.model_fields["loop"].annotation)[0])
 
@@ -47,40 +41,14 @@ def test_every_loop_runs_with_every_pan_axis(tmp_path: Path, pan: str, loop: str
     assert found["reference_distance_rms"] < 0.05
 
 
-@pytest.mark.parametrize("reference", [kind for kind in kinds(ReferenceSpec) if kind not in ("point", "legs")])
+@pytest.mark.parametrize(
+    "reference", [kind for kind in kinds(ReferenceSpec) if kind not in ("point", "legs")]
+)
 @pytest.mark.parametrize("controller", ["lqr", "open_loop", "lyapunov", "front_point"])
 def test_every_tracker_follows_every_reference(tmp_path: Path, controller: str, reference: str) -> None:
     block = json.dumps({"kind": reference, "speed": 0.4, "acceleration": 1.0, **BLOCKS.get(reference, {})})
     found = metrics(tmp_path, f"controller={controller}", f"reference={block}")
     assert found["reference_distance_rms"] < 0.05
-
-
-@pytest.mark.parametrize("estimator", ESTIMATORS)
-def test_every_estimator_runs_on_the_bench(tmp_path: Path, estimator: str) -> None:
-    metrics(tmp_path, *SIGHTS, "plant.beacons=[{at: [0, 0]}, {at: [0, 3], colour: blue}]", START,
-            f"estimator={estimator}")  # fmt: skip
-
-
-@pytest.mark.parametrize("robot", ["diffdrive", "tricycle"])
-@pytest.mark.parametrize("controller", CONTROLLERS)
-@pytest.mark.parametrize("estimator", ESTIMATORS)
-def test_every_estimator_with_every_controller_on_both_ideal_robots(
-    tmp_path: Path, estimator: str, controller: str, robot: str
-) -> None:
-    settings = [
-        "plant={kind: kinematic, beacons: [{at: [0, 0]}, {at: [0, 3], colour: blue}]}",
-        *SIGHTS,
-        f"robot={{kind: {robot}, start: [2, -1, 0.3]}}",
-        f"estimator={estimator}",
-        f"controller={controller}",
-    ]
-    if controller == "cloud":
-        settings.append("reference={kind: point, pose: [3, 0, 1]}")
-    if (controller, robot) == ("cloud", "tricycle"):
-        with pytest.raises(ScenarioError, match="on the spot, which a tricycle cannot"):
-            metrics(tmp_path, *settings)
-        return
-    metrics(tmp_path, *settings)
 
 
 REFUSED = {
