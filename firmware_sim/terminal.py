@@ -3,7 +3,8 @@
 Extended frames, so that they never mix with the drive's own traffic. To the firmware, once a tick: encoder
 counts I32, motor current mA I16, supply U8 in quarters of a volt, counter U8. From it: duty I16 (Q15),
 bits U8, the counter it answers, and the speed reference in µrad/s I32, for the record. Little-endian.
-A frame without data to the firmware switches its power off and on; it is answered likewise.
+A frame without data to the firmware switches its power off and on; it is answered likewise. One with a single
+byte holds digital inputs (bits of 60FD) that have changed; it is not answered.
 """
 
 from __future__ import annotations
@@ -66,6 +67,9 @@ class Terminal:
         if not frame.data:
             self._power()
             return [self._framed(b"")]
+        if len(frame.data) == 1:
+            self._drive.read(frame.data[0])
+            return []
         if len(frame.data) != _PINS.size:
             self.malformed += 1
             return []

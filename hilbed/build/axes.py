@@ -12,10 +12,20 @@ from hilbed.can.port import Port
 from hilbed.can.reported import Reported
 from hilbed.can.terminals import Terminals
 from hilbed.can.wire import Wire
-from hilbed.plant.axes import Axis, EcuAxis, MirroredAxis, RealAxis, SimulatedAxis, own_firmware
+from hilbed.plant.axes import (
+    Axis,
+    EcuAxis,
+    HomeSwitch,
+    MirroredAxis,
+    RealAxis,
+    SimulatedAxis,
+    SwitchedAxis,
+    SwitchedEcuAxis,
+    own_firmware,
+)
 from hilbed.plant.drivetrain import DriveTrain
 from hilbed.plant.encoder import Encoder
-from hilbed.plant.specs import SimulatedSpec
+from hilbed.plant.specs import STEERING, SimulatedSpec
 
 
 @dataclass(frozen=True)
@@ -39,23 +49,34 @@ class Workshop:
 
 
 def _train(shop: Workshop, node: Node) -> DriveTrain:
-    spec = shop.spec
-    return DriveTrain(spec.motor, spec.gear, spec.chopper, spec.tick, shop.inertia[node.name])
+    spec, machine = shop.spec, shop.spec.machine(node.name)
+    return DriveTrain(machine.motor, machine.gear, spec.chopper, spec.tick, shop.inertia[node.name])
 
 
-def _encoder(shop: Workshop) -> Encoder:
-    return Encoder(shop.spec.encoder, shop.spec.tick)
+def _encoder(shop: Workshop, node: Node) -> Encoder:
+    return Encoder(shop.spec.machine(node.name).encoder, shop.spec.tick)
+
+
+def _switch(shop: Workshop, node: Node) -> HomeSwitch | None:
+    """Returns the home switch of the steering axis, if it has one."""
+    steering = shop.spec.steering
+    if node.name != STEERING or steering is None or steering.switch is None:
+        return None
+    return HomeSwitch(steering.switch, node.table.units.sign(node.axis))
 
 
 def _simulated(shop: Workshop, node: Node) -> Axis:
     """The bench's own firmware where the table is its own, else a stand-in that speaks as the table says."""
-    train, encoder = _train(shop, node), _encoder(shop)
+    train, encoder = _train(shop, node), _encoder(shop, node)
     if node.table.identity == load_table(OWN).identity:
-        return SimulatedAxis(node.name, own_firmware(node.id), train, encoder, shop.wire.attach)
+        make, attach, switch = own_firmware(node.id), shop.wire.attach, _switch(shop, node)
+        if switch is not None:
+            return SwitchedAxis(node.name, make, train, encoder, attach, switch)
+        return SimulatedAxis(node.name, make, train, encoder, attach)
     made = shop.stand_ins.get(node.id)
     if made is None:
         made = shop.stand_ins[node.id] = (
-            StandIn(node.id, node.table, plate(shop.spec)),
+            StandIn(node.id, node.table, plate(shop.spec.machine(node.name))),
             shop.wire.attach(node.name),
         )
     standin, port = made
@@ -65,12 +86,15 @@ def _simulated(shop: Workshop, node: Node) -> Axis:
 
 def _ecu(shop: Workshop, node: Node) -> Axis:
     assert shop.terminals is not None
-    return EcuAxis(node.name, _train(shop, node), _encoder(shop), shop.terminals.by_node[node.id])
+    terminal, switch = shop.terminals.by_node[node.id], _switch(shop, node)
+    if switch is not None:
+        return SwitchedEcuAxis(node.name, _train(shop, node), _encoder(shop, node), terminal, switch)
+    return EcuAxis(node.name, _train(shop, node), _encoder(shop, node), terminal)
 
 
 def _real(shop: Workshop, node: Node) -> Axis:
     """The wheel is turned with what a motor of the scenario's kind can do at most."""
-    motor, gear = shop.spec.motor, shop.spec.gear
+    motor, gear, _ = shop.spec.machine(node.name)
     torque = motor.max_current * motor.torque_constant * gear.ratio * gear.efficiency
     return RealAxis(node.name, Reported(node, shop.wire.attach), torque)
 

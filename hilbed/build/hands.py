@@ -28,6 +28,8 @@ class Plant(Protocol):
 
     def idle(self, start: Nanos, end: Nanos) -> None: ...
 
+    def live(self, start: Nanos, end: Nanos) -> None: ...
+
     def start(self) -> None: ...
 
     def advance(self, start: Nanos, end: Nanos) -> None: ...
@@ -37,7 +39,8 @@ class Plant(Protocol):
 class Hands:
     """Boots and stops a bench; tick and period in ns; flush: what is still on its way to sensors comes in.
 
-    wake: brings up what is elsewhere, before time begins; faults: of the bus.
+    wake: brings up what is elsewhere, before time begins; faults: of the bus;
+    searching: whether a drive looks for its home as it is booted, which moves the robot.
     """
 
     master: Master
@@ -50,15 +53,17 @@ class Hands:
     wake: Sequence[Waker] = ()
     faults: Faults | None = None
     power_on: Nanos = BOOT
+    searching: bool = False
 
     def boot(self, going: Callable[[], None]) -> None:
         """Brings the drives up, from `power_on` before t = 0 on; `going` raises where that is to end."""
 
         def pump(t: Nanos) -> Nanos:
             going()
-            self.plant.idle(t, t + self.tick)
+            boot(t, t + self.tick)
             return t + self.tick
 
+        boot = self.plant.live if self.searching else self.plant.idle
         start = -self.power_on
         for wake in self.wake:
             wake(start, going)

@@ -10,10 +10,10 @@ import numpy as np
 from hilbed import rng
 from hilbed.build.bench import BOOT
 from hilbed.build.minds import ESTIMATOR_STREAM, Surroundings
-from hilbed.can.node import Node
+from hilbed.can.node import HERE, Node
 from hilbed.can.specs import resolve
-from hilbed.clock import SECOND
-from hilbed.plant.specs import SimulatedSpec
+from hilbed.clock import SECOND, seconds
+from hilbed.plant.specs import SimulatedSpec, SteeringSpec
 from hilbed.ports import Reference
 from hilbed.robots import RobotSpec, TricycleSpec
 from hilbed.scenario.model import Scenario
@@ -23,6 +23,12 @@ from hilbed.types import Nanos, Pose
 
 BRAKING = 2.5
 """m/s²; a tricycle whose wheels brake harder slides on: not all of them have a drive, or carry much."""
+
+SEARCH = 8 * SECOND
+"""How much longer the boot is where an axis looks for its home; at the latest it has found it by then."""
+
+SEARCH_SPEED, EDGE_SPEED = 0.5, 0.05
+"""rad/s, towards the home switch and over its edge."""
 
 BEHIND = 0.2
 """rad; a steering axis that is so far behind its demand is jammed."""
@@ -44,7 +50,9 @@ def told_of(scenario: Scenario, start: Pose) -> Pose:
 def boot_of(scenario: Scenario) -> Nanos:
     """Returns how long before t = 0 the drives are powered: by so much the logs' time is ahead of t."""
     away = any(node.kind != "simulated" for node in scenario.nodes.values())
-    return BOOT if scenario.realtime is None or not away else scenario.realtime.boot * SECOND
+    searching = any(node.homing not in (None, HERE) for node in scenario.nodes.values())
+    boot = BOOT if scenario.realtime is None or not away else scenario.realtime.boot * SECOND
+    return boot + SEARCH if searching else boot
 
 
 def surroundings(scenario: Scenario, beacons: Sequence[BeaconSpec], start: Pose) -> Surroundings:
@@ -61,7 +69,7 @@ def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> 
     return tuple(
         replace(node, max_speed=fastest)
         if node.kind == "real"
-        else _limited(_told(node, spec), scenario.robot)
+        else _homed(_limited(_told(node, spec), scenario.robot), spec.steering)
         for node in nodes
     )
 
@@ -81,15 +89,30 @@ def _limited(node: Node, robot: RobotSpec) -> Node:
     return replace(node, max_speed=robot.max_steering_rate, settings={**ends, **node.settings})
 
 
+def _homed(node: Node, steering: SteeringSpec | None) -> Node:
+    """Returns a drive that is to look for its home as it is told where that is and how to look."""
+    if steering is None or steering.switch is None or not node.searches:
+        return node
+    per_radian = abs(node.counts_per_radian)
+    search = {
+        "home": steering.switch * per_radian,
+        "homing_speed": SEARCH_SPEED * per_radian,
+        "homing_edge_speed": EDGE_SPEED * per_radian,
+        "homing_timeout": 1e3 * seconds(SEARCH),
+    }
+    return replace(node, settings={**search, **node.settings})
+
+
 def _told(node: Node, spec: SimulatedSpec) -> Node:
     """Returns a node that is told at boot what it drives, where the scenario does not say otherwise.
 
     Not for a real drive, which knows its motor better than the scenario does.
     """
+    motor, gear, encoder = spec.machine(node.name)
     plate = {
-        "counts_per_turn": spec.encoder.resolution,
-        "resistance": spec.motor.resistance,
-        "back_emf": spec.motor.back_emf * spec.gear.ratio,
+        "counts_per_turn": encoder.resolution,
+        "resistance": motor.resistance,
+        "back_emf": motor.back_emf * gear.ratio,
     }
     known = {key: value for key, value in plate.items() if key in node.table.settings}
     return replace(node, settings={**known, **node.settings})

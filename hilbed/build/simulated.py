@@ -31,11 +31,10 @@ from hilbed.pacer import Pacer
 from hilbed.plant.axes import Axis
 from hilbed.plant.bullet import BulletWorld
 from hilbed.plant.bullet_tricycle import TricycleWorld
-from hilbed.plant.drivetrain import reflected_inertia
 from hilbed.plant.simulated import SimulatedPlant
-from hilbed.plant.specs import SimulatedSpec
+from hilbed.plant.specs import STEERING, SimulatedSpec
 from hilbed.plant.supply import Supply
-from hilbed.plant.urdf import moved_inertia
+from hilbed.plant.urdf import Behind, moved_inertia
 from hilbed.ports import Witness
 from hilbed.robots import ROBOTS
 from hilbed.robots.limited import Limited
@@ -82,9 +81,11 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     effects = Effects([spec.friction] * len(body.treads), len(robot.drives))
     schedule = schedule_of(scenario, robot.drives, effects)
     sensors = make_sensors(scenario, Scene(spec.beacons, effects, witness, cost, separate), closing)
-    inertia = reflected_inertia(spec.motor, spec.gear)
+    inertia = Behind(spec.machine(robot.drives[0]).inertia, spec.machine(STEERING).inertia)
     world = WORLDS[scenario.robot.kind](body, spec, start, inertia, cost)
     closing.callback(world.close)
+    if spec.steering is not None:
+        world.turn(robot.drives.index(STEERING), spec.steering.start)
     faults = Faults()
     wire = Wire(scenario.bus.bitrate, witness.transfer, faults.note)
     faults.join(wire)
@@ -111,7 +112,8 @@ def _bench(loaded: Loaded, means: _Means, closing: ExitStack) -> Bench:
     flush = [sensor.flush for sensor in sensors]
     wake = elsewhere.wakers(nodes, carriage, terminals)
     master, power_on = Master(nodes, port, period), boot_of(scenario)
-    hands = Hands(master, base, plant, carriage, flush, tick, period, wake, faults, power_on)
+    searching = any(node.searches for node in nodes)
+    hands = Hands(master, base, plant, carriage, flush, tick, period, wake, faults, power_on, searching)
     return Bench(
         rig, told, reference, robot.drives, kinds_of(scenario), tuple(spec.beacons), tick,
         hands.boot, hands.stop, plant.ticks, hands.events, closing.close, nodes,

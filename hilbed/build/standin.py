@@ -18,7 +18,7 @@ from hilbed.can.nmt import START
 from hilbed.can.objects import Object
 from hilbed.can.sdo import ABORT, DOWNLOAD, UPLOAD
 from hilbed.clock import MILLISECOND
-from hilbed.plant.specs import SimulatedSpec
+from hilbed.plant.specs import Machine
 from hilbed.types import Frame, Nanos
 
 _READ_ONLY, _NOT_MAPPABLE = 0x06010002, 0x06040041
@@ -195,6 +195,9 @@ class Side:
             self._standin.poll(t)
         return self._inner.drive.tick(t, counts, current, supply)
 
+    def read(self, inputs: int) -> None:
+        """Has no digital inputs that its table knows."""
+
     @property
     def bridge_enabled(self) -> bool:
         """False: the chopper is open."""
@@ -206,13 +209,13 @@ class Side:
         return self._inner.drive.speed_ref
 
 
-def plate(spec: SimulatedSpec) -> dict[tuple[int, int], float]:
+def plate(machine: Machine) -> dict[tuple[int, int], float]:
     """Returns what a drive's maker has stored of encoder and motor, by index and sub-index."""
-    motor, scale = spec.motor, spec.encoder.resolution / _COUNTS
+    motor, scale = machine.motor, machine.encoder.resolution / _COUNTS
     return {
-        (0x2001, 0): spec.encoder.resolution,
+        (0x2001, 0): machine.encoder.resolution,
         (0x2012, 1): motor.resistance,
-        (0x2012, 2): motor.back_emf * spec.gear.ratio,
+        (0x2012, 2): motor.back_emf * machine.gear.ratio,
         (0x6075, 0): _RATED,
         **{(index, 0): round(scale * value) for index, value in _IN_COUNTS.items()},
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 SHUTDOWN, SWITCH_ON, ENABLE_OPERATION = 0x0006, 0x0007, 0x000F
 HOME = 0x001F
 """Operation enabled, and in the homing mode: begin."""
-HOMED = 0x1000
+HOMED, NOT_HOMED = 0x1000, 0x2000
 """Of the statusword in the homing mode."""
 DISABLE_VOLTAGE, QUICK_STOP, FAULT_RESET = 0x0000, 0x0002, 0x0080
 

@@ -18,6 +18,7 @@ _CODES = {
     0x7305: "encoder",
     0x8130: "heartbeat or life guarding lost",
     0x8210: "PDO too short to be processed",
+    0x8600: "homing or positioning",
     0x8611: "following error",
 }
 _CLASSES = {

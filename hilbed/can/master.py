@@ -19,6 +19,8 @@ STATE_TIMEOUT: Nanos = 300 * MILLISECOND
 SDO_TIMEOUT: Nanos = 100 * MILLISECOND
 SLOWER = 5
 """By so much longer is waited for a drive that is not in this process: adapters and machines may be busy."""
+HOMING_TIMEOUT: Nanos = 60_000 * MILLISECOND
+"""For a drive that looks for a switch; its own time-out is the shorter one."""
 SETTLING: Nanos = 20 * MILLISECOND
 """A drive that finds something wrong with its supply or motor says so within this time of being enabled."""
 
@@ -144,8 +146,10 @@ def _home(link: Link, sdo: SdoClient, node: Node) -> None:
     """Has the drive find its zero by the method that it has been told, then gives it its own mode back."""
     control, mode = node.of("controlword"), node.of("mode")
     sdo.write(control.index, control.sub, control.type, cia402.HOME)
-    deadline = link.t + _for(node, STATE_TIMEOUT)
-    while not _statusword(sdo, node) & cia402.HOMED:
+    deadline = link.t + (HOMING_TIMEOUT if node.searches else _for(node, STATE_TIMEOUT))
+    while not (statusword := _statusword(sdo, node)) & cia402.HOMED:
+        if statusword & cia402.NOT_HOMED:
+            raise BusError(f"{node}: has not found its home{_why(sdo, node)}")
         if link.t >= deadline:
             raise BusError(f"{node}: told to home (bit 4 of 6040), but does not say that it has")
         link.step()

@@ -13,6 +13,10 @@ Kind: TypeAlias = Literal["simulated", "ecu", "real"]
 """Where a drive is: all of it here; its firmware elsewhere; all of it elsewhere."""
 
 
+HERE = 37
+"""The homing method that moves nothing."""
+
+
 @dataclass(frozen=True)
 class Node:
     """A drive by name and node number, its type's table, and what the scenario sets.
@@ -35,6 +39,11 @@ class Node:
     def first_mode(self) -> str:
         """The mode in which it is enabled: one that must be homed does not move before."""
         return "homing" if self.table.homes else self.mode
+
+    @property
+    def searches(self) -> bool:
+        """Whether it moves to find its home: by a switch, not where it stands."""
+        return self.settings.get("homing", HERE) != HERE
 
     @property
     def counts_per_turn(self) -> float:

@@ -2,7 +2,8 @@
 
 Extended identifiers, the node's number added. To the firmware, once a tick: encoder counts I32, current mA
 I16, supply U8 (0.25 V), counter U8. From it: duty I16 (Q15), bits U8, the counter answered, speed reference
-in µrad/s I32, which some firmware leaves out. No data: the power is switched off and on, and the answer.
+in µrad/s I32, which some firmware leaves out. No data: the power is switched off and on, and the answer. One
+byte to the firmware: digital inputs (bits of 60FD) that have changed, read with the tick that follows.
 """
 
 from __future__ import annotations
@@ -42,6 +43,11 @@ def power(node: int) -> Frame:
 def pins(node: int, counts: int, current: int, supply: int, counter: int) -> Frame:
     """Returns the frame of one tick: counts (I32), mA (I16), quarters of a volt (U8), counter (U8)."""
     return Frame(TO_FIRMWARE + node, _PINS.pack(counts, current, supply, counter), extended=True)
+
+
+def inputs(node: int, bits: int) -> Frame:
+    """Returns the frame of digital inputs, in the bits of 60FD."""
+    return Frame(TO_FIRMWARE + node, bytes((bits,)), extended=True)
 
 
 def is_terminal(frame: Frame) -> bool:

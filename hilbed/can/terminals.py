@@ -51,6 +51,11 @@ class Terminal:
         self._counter = self._counter + 1 & 0xFF
         self._send(terminal.pins(self.node.id, counts, current, supply, self._counter))
 
+    def read(self, inputs: int) -> None:
+        """Shows digital inputs (bits of 60FD) that have changed, before the pins of a tick."""
+        if not self.gone:
+            self._send(terminal.inputs(self.node.id, inputs))
+
     def take(self, data: bytes) -> None:
         """Takes what the firmware has sent; what is malformed or old changes nothing."""
         if not data:

@@ -49,7 +49,7 @@ class OtherDesk:
     """A drive of another type on a desk: a stand-in that speaks as its table says, a motor for each axis."""
 
     def __init__(self, node: int, table: DriveTable) -> None:
-        standin = StandIn(node, table, plate(SimulatedSpec(kind="bullet")))
+        standin = StandIn(node, table, plate(SimulatedSpec(kind="bullet").machine("left")))
         self.motors = [Desk(Build(node)) for _ in standin.axes]
         for motor, side in zip(self.motors, standin.axes, strict=True):
             motor.firmware = cast("Drive", side)  # the same pins

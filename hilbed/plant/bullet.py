@@ -10,7 +10,7 @@ from hilbed.cost import Cost, perf_counter
 from hilbed.effects import Effects
 from hilbed.plant.bullet_setup import add_spin_inertia, connect, grip_ratios, load, p
 from hilbed.plant.bullet_spec import BulletSpec
-from hilbed.plant.urdf import Body
+from hilbed.plant.urdf import Behind, Body
 from hilbed.types import Diverged, Pose, ScenarioError
 
 # Cosine of 25°: no robot on wheels comes back from there.
@@ -35,8 +35,8 @@ class BulletWorld:
     an error of f² − 1 in it.)
     """
 
-    def __init__(self, body: Body, spec: BulletSpec, start: Pose, inertia: float, cost: Cost) -> None:
-        """inertia: kg m² that turns with each wheel behind its gear. Raises ScenarioError."""
+    def __init__(self, body: Body, spec: BulletSpec, start: Pose, inertia: Behind, cost: Cost) -> None:
+        """Raises ScenarioError where PyBullet does not take the body."""
         self._spec = spec
         self._cost = cost
         self._half_track = 0.5 * body.track
@@ -79,6 +79,15 @@ class BulletWorld:
                 "base_link: its inertia must be about axes parallel to its frame (ixy = ixz = iyz = 0)"
             )
         return x, y, z
+
+    def turn(self, drive: int, angle: float) -> None:
+        """Has a drive's joint stand at an angle (rad) from the beginning."""
+        p.resetJointState(self._robot, self._joints[drive], angle, physicsClientId=self._client)
+        self.angles[drive] = self._turned[drive] = angle
+
+    def begin(self) -> None:
+        """It is t = 0 now: what has been before does not count."""
+        self._ticks = 0
 
     def step(self, torques: Sequence[float], coulomb: Sequence[float], effects: Effects) -> None:
         """Moves the world by one tick; raises Diverged.

@@ -8,7 +8,7 @@ from math import sqrt
 from pathlib import Path
 
 from hilbed.plant.bullet_spec import BulletSpec
-from hilbed.plant.urdf import Body
+from hilbed.plant.urdf import Behind, Body
 from hilbed.quiet import muted
 from hilbed.types import ScenarioError
 
@@ -71,15 +71,15 @@ def load(client: int, body: Body, at: tuple[Sequence[float], Sequence[float]]) -
     return robot, by_name
 
 
-def add_spin_inertia(client: int, robot: int, body: Body, joints: Mapping[str, int], inertia: float) -> None:
-    """Adds what turns with each drive behind its gear (kg m²): about a wheel's axle, a steering axis's z."""
+def add_spin_inertia(client: int, robot: int, body: Body, joints: Mapping[str, int], inertia: Behind) -> None:
+    """Adds what turns with each drive behind its gear: about a wheel's axle, a steering axis's z."""
     for name in body.joints:
         x, y, z = p.getDynamicsInfo(robot, joints[name], physicsClientId=client)[2]
-        diagonal = [x, y + inertia, z] if name in body.driven else [x, y, z + inertia]
+        diagonal = [x, y + inertia.wheel, z] if name in body.driven else [x, y, z + inertia.steering]
         p.changeDynamics(robot, joints[name], localInertiaDiagonal=diagonal, physicsClientId=client)
 
 
-def grip_ratios(spec: BulletSpec, body: Body, inertia: float) -> list[float]:
+def grip_ratios(spec: BulletSpec, body: Body, inertia: Behind) -> list[float]:
     """Returns the factor by which each wheel's sideways friction is scaled, found in a scratch client.
 
     Bullet solves friction along and across a wheel one after the other. Where the contact is much easier to
@@ -101,7 +101,7 @@ def grip_ratios(spec: BulletSpec, body: Body, inertia: float) -> list[float]:
         p.disconnect(client)
 
 
-def _mobility(client: int, body: Body, inertia: float, tread: str, force: tuple[float, float]) -> float:
+def _mobility(client: int, body: Body, inertia: Behind, tread: str, force: tuple[float, float]) -> float:
     """Returns the speed of a free robot's contact point along 1 N there for one step."""
     robot, joints = load(client, body, ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]))
     add_spin_inertia(client, robot, body, joints, inertia)

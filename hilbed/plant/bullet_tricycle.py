@@ -9,7 +9,7 @@ from hilbed.cost import Cost
 from hilbed.plant.bullet import FASTEST, BulletWorld
 from hilbed.plant.bullet_setup import p
 from hilbed.plant.bullet_spec import BulletSpec
-from hilbed.plant.urdf import Body
+from hilbed.plant.urdf import Behind, Body
 from hilbed.types import Diverged, Pose
 
 
@@ -20,7 +20,7 @@ class TricycleWorld(BulletWorld):
     touch the ground with the same friction, after those that have one in `wheels` and `normal_forces`.
     """
 
-    def __init__(self, body: Body, spec: BulletSpec, start: Pose, inertia: float, cost: Cost) -> None:
+    def __init__(self, body: Body, spec: BulletSpec, start: Pose, inertia: Behind, cost: Cost) -> None:
         self._wheelbase = body.wheelbase
         self._front = len(body.driven) == 1
         super().__init__(body, spec, start, inertia, cost)

@@ -13,7 +13,7 @@ from hilbed.plant.chopper import Averaged
 from hilbed.plant.drivetrain import DriveTrain, reflected_inertia
 from hilbed.plant.gear import GEARS, GearSpec
 from hilbed.plant.motor import MOTORS
-from hilbed.plant.urdf import diffdrive
+from hilbed.plant.urdf import Behind, diffdrive
 from hilbed.resources import package_file
 from hilbed.types import Pose
 
@@ -39,7 +39,7 @@ def world(spec: BulletSpec | None = None, start: Pose | None = None) -> BulletWo
     """Returns the robot of the bench on its drives' inertia."""
     body = diffdrive(package_file("urdf/diffdrive.urdf"), RADIUS, TRACK)
     pose = start or Pose(0.0, 0.0, 0.0)
-    return BulletWorld(body, spec or BulletSpec(), pose, SPIN - WHEEL_SPIN, Cost())
+    return BulletWorld(body, spec or BulletSpec(), pose, Behind(SPIN - WHEEL_SPIN), Cost())
 
 
 class Rolling(NamedTuple):

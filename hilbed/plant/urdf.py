@@ -12,6 +12,13 @@ from hilbed.types import ScenarioError
 Element = ElementTree.Element
 
 
+class Behind(NamedTuple):
+    """What turns behind a gear (kg m²), rotor and gear: with each wheel, and with a steering axis."""
+
+    wheel: float
+    steering: float = 0.0
+
+
 class Body(NamedTuple):
     """A robot ready for the physics.
 
@@ -41,13 +48,10 @@ class Body(NamedTuple):
         return (*self.driven, *self.idle)
 
 
-def moved_inertia(body: Body, reflected: float) -> list[float]:
-    """Returns what each drive has to turn as the robot goes straight on (kg m²), the robot's mass included.
-
-    reflected: kg m² that turns with a wheel, or a steering axis, behind its gear.
-    """
-    wheel = body.spin + reflected + body.mass * body.radius**2 / len(body.driven)
-    steering = [body.steered + reflected] if body.steered else []
+def moved_inertia(body: Body, reflected: Behind) -> list[float]:
+    """Returns what each drive has to turn as the robot goes straight on (kg m²), with the robot's mass."""
+    wheel = body.spin + reflected.wheel + body.mass * body.radius**2 / len(body.driven)
+    steering = [body.steered + reflected.steering] if body.steered else []
     return [wheel] * len(body.driven) + steering
 
 

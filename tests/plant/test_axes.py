@@ -17,7 +17,7 @@ from hilbed.plant.encoder import Encoder, EncoderSpec
 from hilbed.plant.gear import GEARS
 from hilbed.plant.motor import MOTORS
 from hilbed.plant.specs import SimulatedSpec
-from hilbed.plant.urdf import diffdrive
+from hilbed.plant.urdf import Behind, diffdrive
 from hilbed.scenario import files
 from hilbed.types import Pose
 
@@ -62,7 +62,7 @@ def test_a_mirrored_drive_does_with_the_opposite_duty_the_same_to_the_wheel() ->
 def world(friction: float) -> BulletWorld:
     spec = SimulatedSpec(kind="bullet", friction=friction)
     body = diffdrive(files.resolve("package:urdf/diffdrive.urdf", Path()), 0.1, 0.4)
-    return BulletWorld(body, spec, Pose(0.0, 0.0, 0.0), reflected_inertia(MOTOR, GEAR), Cost())
+    return BulletWorld(body, spec, Pose(0.0, 0.0, 0.0), Behind(reflected_inertia(MOTOR, GEAR)), Cost())
 
 
 def lead(friction: float, torque: float, ticks: int, load: float = 0.0) -> BulletWorld:

@@ -26,7 +26,7 @@ from hilbed.plant.checks import (
     kinetic,
     world,
 )
-from hilbed.plant.urdf import diffdrive
+from hilbed.plant.urdf import Behind, diffdrive
 from hilbed.resources import package_file
 from hilbed.types import Diverged, Pose
 
@@ -275,7 +275,7 @@ def test_a_torque_that_is_no_number_is_divergence(make: Make) -> None:
 @pytest.mark.parametrize(("radius", "track"), [(0.05, 0.25), (0.15, 0.6)])
 def test_another_geometry_rolls_as_well(radius: float, track: float) -> None:
     body = diffdrive(package_file("urdf/diffdrive.urdf"), radius, track)
-    robot = BulletWorld(body, BulletSpec(), Pose(0.0, 0.0, 0.0), 0.005, Cost())
+    robot = BulletWorld(body, BulletSpec(), Pose(0.0, 0.0, 0.0), Behind(0.005), Cost())
     _, turned = servo(robot, (3.0, 4.0), 2000, effects())
     left, right = robot.angles
     robot.close()

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from hilbed.plant.checks import MASS, SHARE, SPIN, WHEEL_SPIN
-from hilbed.plant.urdf import diffdrive, moved_inertia
+from hilbed.plant.urdf import Behind, diffdrive, moved_inertia
 from hilbed.resources import package_file
 from hilbed.types import ScenarioError
 
@@ -45,7 +45,7 @@ def test_what_a_wheel_has_to_move() -> None:
     body = diffdrive(FILE, 0.1, 0.4)
     assert body.mass == MASS
     assert body.spin == WHEEL_SPIN
-    assert moved_inertia(body, SPIN - WHEEL_SPIN) == pytest.approx([SHARE, SHARE])
+    assert moved_inertia(body, Behind(SPIN - WHEEL_SPIN)) == pytest.approx([SHARE, SHARE])
 
 
 def test_the_files_own_geometry_is_kept() -> None:

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from hilbed.plant.urdf import moved_inertia
+from hilbed.plant.urdf import Behind, moved_inertia
 from hilbed.plant.urdf_tricycle import tricycle
 from hilbed.resources import package_file
 from hilbed.types import ScenarioError
@@ -67,8 +67,9 @@ def test_which_wheels_are_driven() -> None:
     # A disc's spin, and what the steering axis turns: fork and wheel about the vertical.
     assert front.spin == pytest.approx(0.5 * 0.8 * 0.1**2)
     assert front.steered == pytest.approx(0.0024 + 0.002167)
-    assert moved_inertia(front, 0.01) == pytest.approx([0.004 + 0.01 + 24 * 0.01, 0.004567 + 0.01])
-    assert moved_inertia(rear, 0.01) == pytest.approx([0.004 + 0.01 + 12 * 0.01] * 2 + [0.014567])
+    behind = Behind(0.01, 0.03)
+    assert moved_inertia(front, behind) == pytest.approx([0.004 + 0.01 + 24 * 0.01, 0.004567 + 0.03])
+    assert moved_inertia(rear, behind) == pytest.approx([0.004 + 0.01 + 12 * 0.01] * 2 + [0.034567])
 
 
 @pytest.mark.parametrize(

@@ -7,5 +7,16 @@ from hilbed.plant.axes.ecu import EcuAxis
 from hilbed.plant.axes.mirrored import MirroredAxis
 from hilbed.plant.axes.real import RealAxis
 from hilbed.plant.axes.simulated import SimulatedAxis, own_firmware
+from hilbed.plant.axes.switched import HomeSwitch, SwitchedAxis, SwitchedEcuAxis
 
-__all__ = ["Axis", "EcuAxis", "MirroredAxis", "RealAxis", "SimulatedAxis", "own_firmware"]
+__all__ = [
+    "Axis",
+    "EcuAxis",
+    "HomeSwitch",
+    "MirroredAxis",
+    "RealAxis",
+    "SimulatedAxis",
+    "SwitchedAxis",
+    "SwitchedEcuAxis",
+    "own_firmware",
+]

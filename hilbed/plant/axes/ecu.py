@@ -32,6 +32,10 @@ class Terminal(Protocol):
 
     def present(self, counts: int, current: int, supply: int) -> None: ...
 
+    def read(self, inputs: int) -> None:
+        """Shows digital inputs that have changed, before the pins of the tick."""
+        ...
+
 
 class EcuAxis:
     """Motor and shaft of a drive that is told what to do from elsewhere."""

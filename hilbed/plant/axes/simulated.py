@@ -37,6 +37,8 @@ class Firmware(Protocol):
 
     def on_frame(self, t: Nanos, frame: Frame) -> None: ...
 
+    def read(self, inputs: int) -> None: ...
+
     def tick(self, t: Nanos, counts: int, current: int, supply: int) -> int: ...
 
 
@@ -62,6 +64,9 @@ class Unpowered:
 
     def on_frame(self, t: Nanos, frame: Frame) -> None:
         """Takes a frame."""
+
+    def read(self, inputs: int) -> None:
+        """Takes digital inputs."""
 
     def tick(self, t: Nanos, counts: int, current: int, supply: int) -> int:  # noqa: ARG002
         return 0
