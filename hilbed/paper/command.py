@@ -54,7 +54,8 @@ def publish(name: str, content: Paper, options: Options) -> int:
     asked = ends(content, options.seeds)
     _take(folder)
     draft = Content(name, content, {one.name: one.folder.name for one in planned}, Results(), {})
-    write_whole(folder / PAGE, write(draft).encode())  # says whose folder it is
+    if not (folder / PAGE).exists():
+        write_whole(folder / PAGE, write(draft).encode())  # says whose folder it is
     results = _results(planned, asked, folder, options)
     progress("writing the page")
     _write(draft._replace(results=results), planned, folder)

@@ -24,8 +24,8 @@ def written(loaded: Loaded) -> str:
     return yaml12.write(resolved(pack(loaded.scenario, loaded.folder).scenario, versions()))
 
 
-def finished(folder: Path, loaded: Loaded) -> bool | None:
-    """Tells whether a folder's run of this very scenario, seed and versions has passed.
+def finished(folder: Path, loaded: Loaded) -> str | None:
+    """Returns why a folder's run of this very scenario, seed and versions has failed, "" where it has passed.
 
     None where there is none, or it did not come to its end.
     """
@@ -34,7 +34,7 @@ def finished(folder: Path, loaded: Loaded) -> bool | None:
             verdict = json.loads((folder / VERDICT).read_bytes())
             judged = all(entry["passed"] for entry in verdict["criteria"].values())
             if verdict["passed"] == judged and verdict["sim_time"] >= loaded.scenario.duration - 1e-9:
-                return bool(verdict["passed"])
+                return str(verdict["reason"])
     return None
 
 

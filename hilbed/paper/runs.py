@@ -83,9 +83,8 @@ def perform_all(experiments: Sequence[Experiment], ends: Sequence[End], jobs: in
 
 
 def _deaf() -> None:
-    """Leaves Ctrl-C to the process that leads; SIGTERM ends the process at once."""
+    """Leaves Ctrl-C, which comes to every process of a terminal, to the one that leads."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def run(experiment: Experiment, force: bool) -> Done:
@@ -98,9 +97,9 @@ def run(experiment: Experiment, force: bool) -> Done:
     from hilbed.scenario.load import load
 
     loaded = load(experiment.scenario, [*experiment.settings, "record=signals"])
-    passed = None if force else finished(experiment.folder, loaded)
-    if passed is not None and (experiment.settings or (experiment.folder / REPORT).exists()):
-        return Done(0 if passed else 1, kept=True)
+    failure = None if force else finished(experiment.folder, loaded)
+    if failure is not None and (experiment.settings or (experiment.folder / REPORT).exists()):
+        return Done(1 if failure else 0, failure, kept=True)
     outcome = perform(loaded, RunFolder(experiment.folder, force=True))
     report = "" if experiment.settings else _reported(experiment.folder)
     reasons = (str(outcome.verdict["reason"]), report)
