@@ -23,7 +23,7 @@ def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool, pacer: Pacer
     """Returns a bench whose odometry, readings and truth come from a file; raises ScenarioError."""
     scenario, spec = loaded.scenario, loaded.scenario.plant
     assert isinstance(spec, RecordedSpec)
-    robot = Recorded(spec, load(files.resolve(spec.file, loaded.folder)))
+    robot = _robot(loaded)
     sensors = tuple(RecordedSensor(robot, kind, witness) for kind in spec.kinds())
     reference = None if scenario.reference is None else scenario.reference.build()
     period = nanos(scenario.period)
@@ -39,6 +39,17 @@ def recorded(loaded: Loaded, witness: Witness, cost: Cost, _: bool, pacer: Pacer
     beacons = tuple(BeaconSpec(at=at) for at in robot.beacons)
     pace = at_once if pacer is None else pacer.due
     return Bench(rig, robot.start, reference, (), dict.fromkeys(spec.kinds(), 1), beacons, pace=pace)
+
+
+def known_of(loaded: Loaded) -> Surroundings:
+    """Returns what the estimator of a recorded robot knows from the start; raises ScenarioError."""
+    return _known(_robot(loaded), loaded.scenario.seed)
+
+
+def _robot(loaded: Loaded) -> Recorded:
+    spec = loaded.scenario.plant
+    assert isinstance(spec, RecordedSpec)
+    return Recorded(spec, load(files.resolve(spec.file, loaded.folder)))
 
 
 def _known(robot: Recorded, seed: int) -> Surroundings:

@@ -149,6 +149,7 @@ def _poses(rows: Array) -> dict[str, np.ndarray]:
         "command": rows[:, 10:12],
         "estimate": rows[:, 12:15],
         "covariance": rows[:, 15:24].reshape(-1, 3, 3),
+        "odometry_step": rows[:, 25:30],
     }
     if not np.isnan(rows[:, 24]).all():
         columns["landmark_distance"] = rows[:, 24]

@@ -24,14 +24,14 @@ class Row(NamedTuple):
     """A control period and its numbers, worked out once for all sinks.
 
     numbers: truth, odometry by dead reckoning, reference (3 each), command (2), estimate (3), covariance (9),
-    landmark distance.
+    landmark distance; of the odometry: when it was sampled (s), distance, turn, v, w (5).
     """
 
     cycle: Cycle
     numbers: list[float]
 
 
-WIDTH = 24  # numbers a row
+WIDTH = 29  # numbers a row
 
 
 def row_of(cycle: Cycle, odometry: Pose, reference: Pose) -> Row:
@@ -41,6 +41,8 @@ def row_of(cycle: Cycle, odometry: Pose, reference: Pose) -> Row:
     for line in estimate.covariance.tolist()[:3]:
         numbers += line[:3]
     numbers.append(estimate.landmark_distance)
+    sampled, distance, turn, v, w, _ = cycle.odometry
+    numbers += (sampled * 1e-9, distance, turn, v, w)
     return Row(cycle, numbers)
 
 

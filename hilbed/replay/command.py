@@ -13,8 +13,9 @@ from hilbed import loop
 from hilbed.record.columns import Columns
 from hilbed.record.journal import Journal
 from hilbed.record.notes import Notes
+from hilbed.record.readings import Signals
 from hilbed.replay.differences import Difference, compared, differences
-from hilbed.replay.recording import Recording, Signals, read_recording
+from hilbed.replay.recording import Recording, read_recording
 from hilbed.replay.rig import rig_of
 from hilbed.scenario.load import version_warnings
 from hilbed.types import HilbedError

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hilbed.angles import wrap
-from hilbed.replay.recording import Signals
+from hilbed.record.readings import Signals
 
 POSES = ("estimate", "odometry", "reference")
 UNKNOWN = ("t", "truth")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 from zipfile import BadZipFile
@@ -15,11 +15,11 @@ from hilbed.build import BOOT
 from hilbed.build.known import boot_of
 from hilbed.clock import SECOND
 from hilbed.record.folder import CAN, SCENARIO, SIGNALS
+from hilbed.record.readings import Signals
 from hilbed.replay.candump import read_log
 from hilbed.scenario.load import Loaded, load
-from hilbed.types import Nanos, Reading, Received, ScenarioError
+from hilbed.types import Nanos, Received, ScenarioError
 
-Signals = Mapping[str, npt.NDArray[Any]]
 MICROSECOND: Nanos = 1000
 
 
@@ -77,29 +77,5 @@ def exact(log: Sequence[Received], signals: Signals, power_on: Nanos = BOOT) -> 
     return frames
 
 
-def readings(signals: Signals, kind: str) -> list[Reading]:
-    """Returns the recorded readings of one kind as the estimator got them, in the order of delivery."""
-    columns = [f"{kind}/{name}" for name in ("t", "delivered", "measured", "std", "claimed")]
-    lacking = [name for name in columns if name not in signals]
-    if lacking:
-        raise ScenarioError(f"{SIGNALS} has no {lacking[0]}: it was recorded by an older hilbed")
-    t, delivered = (_nanos(signals[name]) for name in columns[:2])
-    values, stds = (_rows(signals[name]) for name in columns[2:4])
-    claimed = signals[columns[4]].tolist()
-    return [
-        Reading(kind, at, arrival, value, std, None if beacon < 0 else beacon)
-        for at, arrival, value, std, beacon in zip(t, delivered, values, stds, claimed, strict=True)
-    ]
-
-
-def kinds(signals: Signals) -> list[str]:
-    """Returns the kinds of readings that were recorded."""
-    return [name.removesuffix("/delivered") for name in signals if name.endswith("/delivered")]
-
-
 def _nanos(seconds: npt.NDArray[Any]) -> list[Nanos]:
     return [round(stamp * SECOND) for stamp in seconds.tolist()]
-
-
-def _rows(values: npt.NDArray[Any]) -> list[tuple[float, ...]]:
-    return [tuple(row) for row in values.reshape(len(values), -1).tolist()]

@@ -17,7 +17,8 @@ from hilbed.effects import Effects
 from hilbed.loop import Rig
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.ports import Reference
-from hilbed.replay.recording import Recording, kinds, readings
+from hilbed.record.readings import kinds, readings
+from hilbed.replay.recording import Recording
 from hilbed.robots import ROBOTS
 from hilbed.types import Frame, Nanos, Pose, Reading, Received, ScenarioError, Truth
 

@@ -73,11 +73,16 @@ def _figures(run: Run) -> str:
 
 
 def _details(run: Run) -> str:
-    from hilbed.report import bus_table
+    from hilbed.report import attribution_table, bus_table
 
     scenario = f"<pre>{escape(run.scenario)}</pre>"
     return (
-        page.card("Camera", page.shots(run), "detections are lines, beacons known by their number", wide=True)
+        page.card(
+            "What the error is made of", attribution_table.table(run), attribution_table.NOTE, wide=True
+        )
+        + page.card(
+            "Camera", page.shots(run), "detections are lines, beacons known by their number", wide=True
+        )
         + page.card("Frames by identifier", bus_table.frames(run), bus_table.NOTE, wide=True)
         + page.card("Metrics", page.metrics(run), wide=True)
         + page.card("Scenario", scenario, "resolved: every default written out", wide=True)
