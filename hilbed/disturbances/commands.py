@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import Field
 
 from hilbed.clock import nanos
 from hilbed.disturbances.schedule import Disturbance, DisturbanceBase
 from hilbed.effects import Effects, Surroundings
 from hilbed.ports import Base
-from hilbed.spec import Listed, NonNegative, Positive
+from hilbed.spec import Listed, NonNegative
 from hilbed.types import Command, Nanos, Odometry, Rng
 
 
@@ -22,12 +24,12 @@ class CommandNoise(DisturbanceBase):
 
     kind: Literal["command_noise"] = "command_noise"
     size: Listed[tuple[NonNegative, NonNegative]]
-    hold: Positive = 0.1
+    hold: Annotated[float, Field(ge=0.001, le=1000)] = 0.1
 
 
 def command_noise(spec: CommandNoise, _: int, rng: Rng) -> Disturbance:
     """Returns the disturbance that adds noise to the command."""
-    hold = max(1, nanos(spec.hold))
+    hold = nanos(spec.hold)
     draws: list[tuple[float, float]] = []  # one for each hold that has begun
 
     def apply(since: Nanos, _: Surroundings, effects: Effects) -> Nanos:
