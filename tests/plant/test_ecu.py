@@ -57,6 +57,31 @@ def test_over_the_virtual_bus(tmp_path: Path, alone: dict[str, Any], ecus: tuple
         assert_same(run(tmp_path, *on("virtual", channel, *ecus)), alone)
 
 
+TRICYCLE = """\
+duration: 0.3
+robot: {kind: tricycle, drive: front, start: [0, 0, 0]}
+plant: {kind: bullet, steering: {start: -0.1, switch: 0.05}}
+nodes: {steering: {homing: 19}}
+estimator: odometry
+controller: open_loop
+reference: {kind: circle, radius: 2, speed: 0.4}
+"""
+
+
+@pytest.mark.parametrize("mode", ["csp", "pp"])
+def test_a_steering_axis_that_looks_for_its_home(tmp_path: Path, mode: str) -> None:
+    """Its switch is here and its firmware elsewhere: the inputs are frames, too."""
+    file = tmp_path / "tricycle.yaml"
+    file.write_text(TRICYCLE)
+    settings = [f"nodes.steering.mode={mode}"]
+    alone = perform(load(str(file), settings), None).verdict
+    assert alone["reason"] == ""
+    channel = f"steering {mode}"
+    joined = ["bus.interface=virtual", f"bus.channel={channel}", "nodes.steering.kind=ecu"]
+    with threaded(channel, 2):
+        assert_same(dict(perform(load(str(file), [*settings, *joined]), None).verdict), dict(alone))
+
+
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in QUICK.items():
