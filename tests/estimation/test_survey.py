@@ -13,10 +13,8 @@ from pydantic import ValidationError
 from hilbed.angles import wrap
 from hilbed.estimation.bearing_observers import NEAREST, reduced_rates
 from hilbed.estimation.bearing_specs import SurveySpec
-from hilbed.estimation.consistency import mean_bounds, nees, pose_error
 from hilbed.estimation.odometry_model import OdometryModel
 from hilbed.estimation.sights import Sight, sight
-from hilbed.estimation.specs import OdometrySpec
 from hilbed.estimation.survey_estimator import SurveyEstimator
 from hilbed.estimation.survey_filter import Belief, corrected, moved_on, surprise
 from hilbed.plant.kinematics import exact
@@ -107,33 +105,6 @@ class Drive:
             value = wrap(atan2(y - self.pose.y, x - self.pose.x) - self.pose.yaw + rng.normal(0, std))
             made.append(Reading("azimuth", self.t, self.t, (value,), (std,), k))
         return made
-
-
-NO_NOISE = OdometrySpec(distance_noise=0.0, heading_noise=0.0, turn_noise=0.0)
-
-
-def doubted(seed: int) -> tuple[Array, Array]:
-    rng, drive, std, doubt = np.random.default_rng(seed), Drive(), 2e-3, 0.02
-    guesses = tuple(sight(START, place).r + rng.normal(0, doubt) for place in PLACES)
-    spec = SurveySpec.model_validate(
-        {"distances": guesses, "distance_std": doubt, "odometry": NO_NOISE.model_dump()}
-    )
-    estimator, errors, nis = SurveyEstimator(spec, START), [], []
-    for _ in range(100):
-        estimate = estimator.step(drive.t, drive.odometry(), drive.seen(rng, std))
-        error = pose_error(estimate.mean[None], np.array(drive.pose)[None])
-        errors.append(nees(error, estimate.covariance[None])[0])
-        nis.append(sum(i.nis for i in estimate.innovations))
-        drive.move()
-    assert estimate.landmark_distance == pytest.approx(1.0, abs=0.05)
-    return np.array(errors), np.array(nis[1:])
-
-
-def test_it_is_consistent_over_50_seeds() -> None:
-    errors, nis = (np.array(rows).mean(axis=0) for rows in zip(*map(doubted, range(50)), strict=True))
-    for values, dof in ((errors, 3), (nis, 2)):
-        low, high = mean_bounds(dof, 50)
-        assert np.mean((values > low) & (values < high)) >= 0.9
 
 
 def test_late_and_rare_bearings_and_a_gap() -> None:

@@ -16,7 +16,7 @@ from hilbed.control.lyapunov_tracking import LyapunovTracking
 from hilbed.control.open_loop import OpenLoop
 from hilbed.control.ramps import Ramps, RampSpec, RampsSpec
 from hilbed.control.steered import Steered
-from hilbed.estimation.consistency import mean_bounds, nees, pose_error
+from hilbed.estimation.consistency import pose_error
 from hilbed.estimation.dead_reckoning import DeadReckoning
 from hilbed.estimation.ekf import Ekf
 from hilbed.estimation.specs import DeadReckoningSpec, EkfSpec, OdometrySpec
@@ -136,25 +136,13 @@ def lyapunov() -> LyapunovTracking:
     return LyapunovTracking(LyapunovTrackingSpec(), REFERENCE)
 
 
-def test_closed_loop_comes_to_the_reference_and_equals_an_integration() -> None:
+def test_closed_loop_comes_to_the_reference() -> None:
     result = tracked(lyapunov(), Pose(-20.0, 3.0, 0.0), 0.0)
     left = off(result)
     assert left[0] == pytest.approx(1.0)
     assert left[190] < 0.02
     assert left[-1] < 0.02
     assert abs(result.command[:, 1]).max() <= pi / 4
-    state = np.array((-20.0, 3.0, 0.0))
-    for k in range(500):
-        pose, v_r, w_r = REFERENCE.at(k * PERIOD)
-        dx, dy, e = pose.x - state[0], pose.y - state[1], wrap(pose.yaw - state[2])
-        c, s = np.cos(state[2]), np.sin(state[2])
-        u1 = v_r * np.cos(e) + 0.5 * (c * dx + s * dy)
-        u2 = w_r + v_r * (0.5 * (c * dy - s * dx) + 0.5 * np.sin(e))
-        γ = float(np.clip(np.arctan(u2 / u1), -pi / 4, pi / 4))
-        v = float(np.clip(u1, -1.74, 1.74))
-        rates = lambda _, p, v=v, γ=γ: (v * np.cos(p[2]), v * np.sin(p[2]), v * np.tan(γ))  # noqa: E731
-        state = solve_ivp(rates, (0, 0.1), state, rtol=1e-10, atol=1e-11).y[:, -1]
-        assert result.truth[k + 1, :2] == pytest.approx(state[:2], abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -192,8 +180,8 @@ def sighting(rng: np.random.Generator) -> Callable[[int, Pose], list[Reading]]:
 INITIAL = (0.1, 0.1, 0.05)
 
 
-def localised(seed: int, kind: str) -> tuple[Array, Array, Array]:
-    """Drives the reference in open loop with steering noise; error (N, 3), covariance, and NIS (N, 4)."""
+def localised(seed: int, kind: str) -> Array:
+    """Drives the reference in open loop with steering noise; error (N, 3)."""
     robot, rng = Tricycle(TricycleSpec()), np.random.default_rng(seed)
     vehicle = Vehicle(
         robot.twist, robot.limited, lambda c: Command(c[0], c[1] + rng.normal(0.0, STEERING_STD))
@@ -209,31 +197,12 @@ def localised(seed: int, kind: str) -> tuple[Array, Array, Array]:
     experiment = Experiment(vehicle, start, PERIOD, 49 * NS)
     law = Steered(OpenLoop(REFERENCE), robot)
     result = run(experiment, estimator, law, sighting(rng))
-    covariance = np.array([e.covariance for e in result.estimates])
-    nis = np.array([[i.nis for i in e.innovations] for e in result.estimates])
-    return pose_error(result.mean, result.truth), covariance, nis
+    return pose_error(result.mean, result.truth)
 
 
 def test_the_filter_with_a_tricycles_odometry_beats_dead_reckoning() -> None:
     """Fig. 4.1, 4.2: the filter that a differential drive uses."""
-    filtered, _, _ = localised(1, "ekf")
-    reckoned, _, _ = localised(1, "odometry")
+    filtered, reckoned = localised(1, "ekf"), localised(1, "odometry")
     assert np.abs(filtered[50:, :2]).max() < 0.2
     assert np.abs(reckoned[:, :2]).max() > 5 * np.abs(filtered[50:, :2]).max()
     assert np.abs(filtered[50:, 2]).max() < 0.06
-
-
-def within(values: Array, dof: int, runs: int) -> float:
-    """The share of the steps in which the mean over runs (axis 0) is inside its 95 % bounds."""
-    low, high = mean_bounds(dof, runs)
-    mean = values.mean(axis=0)
-    return float(np.mean((mean > low) & (mean < high)))
-
-
-@pytest.mark.slow
-def test_the_filter_is_consistent_over_50_seeds() -> None:
-    runs = [localised(seed, "ekf") for seed in range(50)]
-    errors = np.array([nees(e, P) for e, P, _ in runs])
-    innovations = np.array([nis.sum(axis=1) for _, _, nis in runs])
-    assert within(errors, 3, 50) >= 0.9
-    assert within(innovations, 4, 50) >= 0.9

@@ -9,7 +9,6 @@ import pytest
 
 from hilbed.criteria.pose import turned
 from hilbed.criteria.signals import Signals
-from hilbed.estimation.consistency import mean_bounds
 from hilbed.scenario import bundled
 from tests.bench import Ran, ran
 
@@ -62,21 +61,3 @@ def test_the_global_observers_error_shrinks_and_turns_with_the_robot(error: floa
     left = np.exp(-5 * 0.09 * run.signals["t"])
     expected = -np.angle(1 - (1 - np.exp(-1j * error)) * left)
     np.testing.assert_allclose(yaw_error(run), expected, atol=1e-6)
-
-
-@pytest.mark.slow
-def test_the_kalman_filter_of_chapter_4_is_consistent_over_50_seeds() -> None:
-    """NEES of the pose and NIS of four readings a step, mean over runs inside its 95 % bounds."""
-    runs = [ran("bui2022/ekf", seed=seed) for seed in range(50)]
-    errors = np.array([nees(run) for run in runs])
-    nis = np.array([run.signals["nis/value"].reshape(-1, 4).sum(axis=1) for run in runs])
-    for values, dof in ((errors, 3), (nis, 4)):
-        low, high = mean_bounds(dof, len(runs))
-        mean = values.mean(axis=0)
-        assert np.mean((mean > low) & (mean < high)) >= 0.9
-
-
-def nees(run: Ran) -> np.ndarray:
-    error = run.signals["estimate"] - run.signals["truth"]
-    error[:, 2] = -yaw_error(run)
-    return np.einsum("ni,nij,nj->n", error, np.linalg.inv(run.signals["covariance"]), error)
