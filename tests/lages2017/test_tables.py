@@ -13,7 +13,6 @@ from hilbed.types import Array
 from tests.bench import ran
 from tests.lages2017.experiment import GOAL
 
-
 STARTS = [(4, 2, 2.5), (4, 4, 3), (2, 6, 1.9), (0, 6, 2.9), (-2, 4, np.pi), (-2, 2, 0), (0, 0, 2), (2, 0, 1)]
 
 
