@@ -9,7 +9,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
-from hilbed.can.drive_table import named_table
+from hilbed.can.drive_table import DriveTable, named_table
 from hilbed.can.node import Node
 from hilbed.conformance import report
 from hilbed.conformance.eds import read_eds
@@ -57,7 +57,12 @@ def _node(options: argparse.Namespace) -> Node:
         problems.append(f"--speed {options.speed:g}: up to {FASTEST:g} rad/s, and not 0")
     if problems:
         raise ScenarioError("\n".join(problems))
-    return Node("under test", options.node, table, axis=options.axis)
+    return subject_node(options.node, table, options.axis)
+
+
+def subject_node(number: int, table: DriveTable, axis: int = 1) -> Node:
+    """Returns the drive under test, in the mode that its table names first."""
+    return Node("under test", number, table, next(iter(table.modes)), axis=axis)
 
 
 @contextmanager

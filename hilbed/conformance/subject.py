@@ -16,6 +16,10 @@ from hilbed.types import Frame, HilbedError, Nanos, Received
 
 STATE_TIMEOUT: Nanos = 1000 * MILLISECOND
 SDO_TIMEOUT: Nanos = 1000 * MILLISECOND
+FAR = 3.0
+"""s, as far as a drive that is told a position is sent to have it turn for a while."""
+SET_POINT = 0x003F
+"""Operation enabled, and a set-point that counts at once."""
 SLOWEST = 0.01
 """rad/s, below which a wheel stands."""
 NMT_SETTLING: Nanos = 20 * MILLISECOND
@@ -30,6 +34,9 @@ STANDARD = {
     "quick_stop_option": Object(index=0x605A, type="i16"),
     "mode_display": Object(index=0x6061, type="i8"),
     "max_velocity": Object(index=0x607F, type="u32"),
+    "lowest_position": Object(index=0x607D, sub=1, type="i32"),
+    "highest_position": Object(index=0x607D, sub=2, type="i32"),
+    "profile_velocity": Object(index=0x6081, type="u32"),
     "acceleration": Object(index=0x6083, type="u32"),
     "quick_stop_deceleration": Object(index=0x6085, type="u32"),
     "modes": Object(index=0x6502, type="u32"),
@@ -213,8 +220,29 @@ class Subject:
         return counts / self.node.counts_per_radian
 
     def target(self, speed: float) -> None:
-        """Writes the target, rad/s."""
-        self.put(self.entry("target_velocity"), speed * self.node.velocity_per_radian)
+        """Writes the target, rad/s; to a drive that is told a position, one that is FAR seconds away."""
+        if self.node.table.positions:
+            self.move(self.angle() + FAR * speed)
+        else:
+            self.put(self.entry("target_velocity"), speed * self.node.velocity_per_radian)
+
+    def angle(self) -> float:
+        """Reads the position, rad."""
+        return self.read("position_actual") / self.node.counts_per_radian
+
+    def move(self, angle: float) -> None:
+        """Writes a target position, rad; in PP it is handed over, to count at once."""
+        self.put(self.entry("target_position"), angle * self.node.counts_per_radian)
+        if self.node.mode == "pp" and self.state() == cia402.ENABLED:
+            for word in (SET_POINT, cia402.ENABLE_OPERATION):
+                self.command(word)
+
+    def hurry(self, speed: float) -> None:
+        """Has a drive that is told a position go there at a speed, rad/s."""
+        rate = abs(speed * self.node.velocity_per_radian)
+        self.write("max_velocity", rate)
+        if self.node.mode == "pp":
+            self.write("profile_velocity", rate)
 
     def use_mode(self, mode: str) -> None:
         """Writes the mode of operation and waits until it is shown; Stuck where it is not."""
@@ -231,6 +259,8 @@ class Subject:
         modes = self.node.table.modes
         self.manage(nmt.START)
         self.use_mode("pv" if "pv" in modes else next(iter(modes)))
+        if self.node.table.positions:
+            self.hurry(speed)
         self.target(0.0)
         self.go(cia402.ENABLED)
         self.target(speed)

@@ -11,7 +11,17 @@ from hilbed.can import cia402, nmt
 from hilbed.can.sdo import SdoError
 from hilbed.can.sdo_aborts import TIMEOUT
 from hilbed.clock import MILLISECOND
-from hilbed.conformance.checks import bus, faults, identity, modes, motion, pdos, sheet, states
+from hilbed.conformance.checks import (
+    bus,
+    faults,
+    identity,
+    modes,
+    motion,
+    pdos,
+    position,
+    sheet,
+    states,
+)
 from hilbed.conformance.eds import Promise
 from hilbed.conformance.result import Result
 from hilbed.conformance.subject import Stuck, Subject
@@ -43,8 +53,8 @@ class Item(NamedTuple):
     powers: bool = False
 
 
-def suite(terms: Terms) -> list[Item]:
-    """Returns the checks, those without power first."""
+def suite(terms: Terms, positions: bool = False) -> list[Item]:
+    """Returns the checks, those without power first; positions: of a drive that is told a position."""
     data_sheet = [Item("eds", partial(sheet.sheet, terms.promises))] if terms.promises else []
     return [
         Item("identity", identity.identity),
@@ -60,8 +70,24 @@ def suite(terms: Terms) -> list[Item]:
         Item("fault", faults.fault, True),
         Item("quick stop", partial(motion.quick_stop, terms.speed), True),
         Item("abandoned", partial(faults.abandoned, terms.speed), True),
-        Item("limits/speed", partial(motion.speed_limit, terms.speed), True),
-        Item("limits/acceleration", partial(motion.acceleration_limit, terms.speed), True),
+        *(_of_positions(terms.speed) if positions else _of_speeds(terms.speed)),
+    ]
+
+
+def _of_speeds(speed: float) -> list[Item]:
+    return [
+        Item("limits/speed", partial(motion.speed_limit, speed), True),
+        Item("limits/acceleration", partial(motion.acceleration_limit, speed), True),
+    ]
+
+
+def _of_positions(speed: float) -> list[Item]:
+    return [
+        Item("homing", position.homing, True),
+        Item("position", partial(position.arrives, speed), True),
+        Item("set-points", partial(position.handshake, speed), True),
+        Item("limits/position", partial(position.limits, speed), True),
+        Item("limits/speed", partial(position.speed_limit, speed), True),
     ]
 
 
@@ -73,7 +99,7 @@ def perform(subject: Subject, terms: Terms) -> Generator[Result, None, None]:
     _approach(subject)
     state = subject.heartbeats.states.get(subject.node.id)
     try:
-        for item in suite(terms):
+        for item in suite(terms, subject.node.table.positions):
             if item.powers and not terms.armed:
                 yield Result(item.name, "not run", note="puts current through the motor: --arm")
                 continue

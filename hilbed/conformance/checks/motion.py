@@ -51,8 +51,8 @@ def speed_limit(speed: float, subject: Subject) -> Iterator[Result]:
 def acceleration_limit(speed: float, subject: Subject) -> Iterator[Result]:
     """In PV the wheel gains speed no faster than 6083 says."""
     table = subject.node.table
-    if "pv" not in table.modes or rate(subject, "acceleration") is None:
-        yield unsupported("limits/acceleration", "no PV, or no 6083 in counts/s²")
+    if not {"pv", "pp"} & {*table.modes} or rate(subject, "acceleration") is None:
+        yield unsupported("limits/acceleration", "no PV or PP, or no 6083 in counts/s²")
         return
     wanted = abs(speed) / 0.5
     subject.write("acceleration", wanted * abs(subject.node.counts_per_radian))
