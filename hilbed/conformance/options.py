@@ -17,7 +17,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--eds", type=Path, metavar="FILE", help="check its objects against this data sheet")
     parser.add_argument("--arm", action="store_true", help="let the motor turn; else only checks at rest")
     parser.add_argument(
-        "--speed", type=float, default=1.0, metavar="RAD/S", help="of the wheel, where it has to turn (1)"
+        "--speed",
+        type=float,
+        default=1.0,
+        metavar="RAD/S",
+        help="at which it has to turn, for up to 3 s one way (1)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write conformance.json there")
     parser.add_argument("--json", action="store_true", help="print the report as JSON and nothing else")

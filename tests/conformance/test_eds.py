@@ -35,12 +35,12 @@ def test_our_drive_keeps_what_its_data_sheet_promises() -> None:
 
 def test_a_promise_that_is_not_kept_is_told(tmp_path: Path) -> None:
     path = tmp_path / "more.eds"
-    text = eds.PATH.read_text().replace("\n[6040]", "\n[6099]")
+    text = eds.PATH.read_text().replace("\n[6040]", "\n[60A9]")
     path.write_text(text)
-    assert Promise(0x6099, 0, 2) in read_eds(path)
+    assert Promise(0x60A9, 0, 2) in read_eds(path)
     ended = hilbed("conformance", "-i", "hilbed", "--node", "3", "--eds", path)
     assert ended.status == 1
-    assert "1 are not as promised: 6099:00 abort 06020000" in ended.out
+    assert "1 are not as promised: 60A9:00 abort 06020000" in ended.out
 
 
 @pytest.mark.parametrize(
