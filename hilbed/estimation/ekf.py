@@ -13,11 +13,12 @@ from hilbed.estimation.dead_reckoning import extrapolation, usable
 from hilbed.estimation.filter import PoseFilter
 from hilbed.estimation.measurement import MODELS, Point
 from hilbed.estimation.motion import predicted
+from hilbed.estimation.readable import readable
 from hilbed.estimation.specs import EkfSpec
 from hilbed.estimation.timeline import Measurement, Node, Timeline
 from hilbed.types import Estimate, Innovation, Nanos, Odometry, Pose, Reading
 
-LARGEST = 1e6  # rad or m: beyond it a reading or its standard deviation is not one
+SIZES = {"azimuth": 1, "range": 1}
 WIDEST = pi**2  # rad²: with no idea of the yaw, more inflation would say nothing
 
 
@@ -68,19 +69,17 @@ class Ekf:
         """Makes usable readings ready and counts the others."""
         measurements = []
         for reading in readings:
-            kind = self._kinds.get(reading.kind)
-            if kind is None or not self._readable(reading):
+            if not self._usable(reading):
                 self.ignored += 1
-            elif kind.use:
+            elif (kind := self._kinds[reading.kind]).use:
                 variance = (kind.std or reading.std[0]) ** 2
                 value = reading.value[0] - kind.bias
                 measurements.append(Measurement(reading.t - self._delay, reading, value, variance))
         return measurements
 
-    def _readable(self, reading: Reading) -> bool:
+    def _usable(self, reading: Reading) -> bool:
         known = reading.beacon is None or 0 <= reading.beacon < len(self._beacons)
-        scalar = len(reading.value) == len(reading.std) == 1
-        return known and scalar and abs(reading.value[0]) < LARGEST and 0 < reading.std[0] < LARGEST
+        return known and readable(reading, SIZES)
 
     def _move(self, odometry: Odometry) -> int:
         """Appends an increment; returns the index of the first node to be run."""

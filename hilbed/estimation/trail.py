@@ -8,6 +8,7 @@ from math import cos, sin
 import numpy as np
 
 from hilbed.angle_arrays import wrap
+from hilbed.chords import chord
 from hilbed.estimation.cloud import cloud_of
 from hilbed.types import Array, Nanos, Pose
 
@@ -52,9 +53,8 @@ class Trail:
 
 def arc_motion(distance: float, turn: float) -> Pose:
     """Returns where an arc of `distance` (m) and `turn` (rad) leads, seen from its beginning."""
-    h = turn / 2
-    chord = distance * (sin(h) / h if h else 1.0)
-    return Pose(chord * cos(h), chord * sin(h), turn)
+    length, direction = chord(distance, turn)
+    return Pose(length * cos(direction), length * sin(direction), turn)
 
 
 def compose(first: Pose, second: Pose) -> Pose:

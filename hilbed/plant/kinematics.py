@@ -10,7 +10,7 @@ from math import cos, sin
 from typing import NamedTuple
 
 from hilbed.angles import wrap
-from hilbed.chords import chord
+from hilbed.poses import moved
 from hilbed.types import Pose, Rng
 
 Twist = tuple[float, float]
@@ -28,10 +28,7 @@ def rates(yaw: float, twist: Twist) -> tuple[float, float, float]:
 
 def exact(pose: Pose, twist: Twist, T: float) -> Pose:
     """Moves along the arc that a held twist is."""
-    turn = T * twist[1]
-    length, direction = chord(T * twist[0], turn)
-    course = pose.yaw + direction
-    return Pose(pose.x + length * cos(course), pose.y + length * sin(course), wrap(pose.yaw + turn))
+    return moved(pose, T * twist[0], T * twist[1])
 
 
 def euler(pose: Pose, twist: Twist, T: float) -> Pose:
