@@ -18,6 +18,7 @@ from hilbed.plant.axes import (
     HomeSwitch,
     MirroredAxis,
     RealAxis,
+    RealSteeringAxis,
     SimulatedAxis,
     SwitchedAxis,
     SwitchedEcuAxis,
@@ -96,7 +97,8 @@ def _real(shop: Workshop, node: Node) -> Axis:
     """The wheel is turned with what a motor of the scenario's kind can do at most."""
     motor, gear, _ = shop.spec.machine(node.name)
     torque = motor.max_current * motor.torque_constant * gear.ratio * gear.efficiency
-    return RealAxis(node.name, Reported(node, shop.wire.attach), torque)
+    kind = RealSteeringAxis if node.table.positions else RealAxis
+    return kind(node.name, Reported(node, shop.wire.attach), torque)
 
 
 _KINDS = {"simulated": _simulated, "ecu": _ecu, "real": _real}

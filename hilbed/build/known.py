@@ -67,7 +67,7 @@ def nodes_of(scenario: Scenario, spec: SimulatedSpec, drives: Iterable[str]) -> 
     nodes = resolve(scenario.nodes, drives)
     fastest = scenario.real_speed_limit / scenario.robot.wheel_radius
     return tuple(
-        replace(node, max_speed=fastest)
+        _known_to_itself(node, scenario, fastest)
         if node.kind == "real"
         else _homed(_limited(_told(node, spec), scenario.robot), spec.steering)
         for node in nodes
@@ -87,6 +87,11 @@ def _limited(node: Node, robot: RobotSpec) -> Node:
     if node.mode == "pp":
         ends["profile_velocity"] = robot.max_steering_rate * abs(node.counts_per_radian)
     return replace(node, max_speed=robot.max_steering_rate, settings={**ends, **node.settings})
+
+
+def _known_to_itself(node: Node, scenario: Scenario, fastest: float) -> Node:
+    """Returns a real drive, which knows its motor, with its highest speed, an axis also with its ends."""
+    return _limited(node, scenario.robot) if node.table.positions else replace(node, max_speed=fastest)
 
 
 def _homed(node: Node, steering: SteeringSpec | None) -> Node:

@@ -170,8 +170,6 @@ def _unsuited(node: Node) -> list[str]:
     if node.table.positions != (node.name in DEFAULT_TABLES):
         what, needed = ("a position", "a speed") if node.table.positions else ("a speed", "a position")
         return [f"nodes: {node.name} is told {needed}, a drive of the type {node.table.name} {what}"]
-    if node.table.positions and node.kind == "real":
-        return [f"nodes: {node.name} is real, which only drives of wheels can be so far"]
     return []
 
 

@@ -191,7 +191,6 @@ def test_a_slippery_patch_lies_under_the_wheels_that_are_on_it(tmp_path: Path) -
         ({"steering": {"table": "hilbed402"}}, "steering is told a position"),
         ({"traction": {"table": "hilbed402-csp"}}, "traction is told a speed"),
         ({"left": {}}, "the robot has no drive 'left'"),
-        ({"steering": "real"}, "steering is real"),
     ],
 )
 def test_drives_that_do_not_suit_are_refused(tmp_path: Path, nodes: dict[str, Any], message: str) -> None:

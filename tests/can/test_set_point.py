@@ -5,8 +5,12 @@ from __future__ import annotations
 import struct
 from math import tau
 
+import cantools
+import pytest
+
 from hilbed.can.axis import STATUS
 from hilbed.can.cia402 import ENABLE_OPERATION, QUICK_STOP
+from hilbed.can.dbc import dbc
 from hilbed.can.drive_table import load_table
 from hilbed.can.node import Node
 from hilbed.can.position_axis import PositionAxis
@@ -60,6 +64,15 @@ def test_the_mode_chooses_the_station_and_the_table() -> None:
     assert type(stations([PositionAxis(csp)])[0]) is not SetPointStation
     assert with_table("steering", {"mode": "pp"})["table"] == "hilbed402-pp"
     assert with_table("steering", {"mode": "pv"})["table"] == "hilbed402-csp"  # which refuses it
+
+
+def test_its_frames_are_in_the_dbc() -> None:
+    database = cantools.database.load_string(dbc([NODE]), "dbc")
+    order = database.decode_message(0x202, struct.pack("<Hi", OFFER, 16_500))
+    assert order == {"controlword": OFFER, "target_position": pytest.approx(tau / 4)}
+    assert database.decode_message(0x482, b"\x27\x16") == {"statusword": 0x1627}
+    shown = database.decode_message(0x382, struct.pack("<bHI", 1, 0, 24_000))
+    assert (shown["mode_display"], shown["supply"]) == ("pp", 24.0)
 
 
 def test_the_table_is_the_other_one_but_for_what_it_says() -> None:

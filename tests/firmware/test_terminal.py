@@ -101,6 +101,16 @@ def test_power_starts_it_anew() -> None:
     assert terminal.receive(bench.pins(NODE, 0, 0, 96, 0)) == first
 
 
+def test_digital_inputs_are_read_and_not_answered() -> None:
+    terminal = Terminal(NODE)
+    tick(terminal, 0, 0, 96, 0)
+    assert terminal.receive(Frame(*bench.inputs(NODE, 4))) == []
+    terminal.receive(Frame(0x600 + NODE, bytes((0x40, 0xFD, 0x60, 0, 0, 0, 0, 0))))
+    answer = next(f for f in terminal.receive(bench.pins(NODE, 0, 0, 96, 1)) if f.id == 0x580 + NODE)
+    assert answer.data[4] == 4
+    assert terminal.malformed == 0
+
+
 def test_without_ticks_its_memory_is_bounded() -> None:
     terminal = Terminal(NODE)
     tick(terminal, 0, 0, 96, 0)

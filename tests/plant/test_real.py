@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import atan, nan, pi
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from hilbed.can.drive_table import load_table
 from hilbed.can.node import Node
 from hilbed.can.reported import Reported
 from hilbed.can.wire import Wire
+from hilbed.plant.axes import RealSteeringAxis
 from hilbed.record.folder import RunFolder
 from hilbed.robots.diffdrive import DiffDrive, DiffDriveSpec
 from hilbed.robots.limited import Limited
@@ -63,6 +64,60 @@ def test_the_wheel_goes_as_fast_as_the_drive_says(tmp_path: Path) -> None:
     assert left["speed"][2:] == pytest.approx(left["speed_measured"][2:], abs=1e-3)
     assert left["current"][-3:].mean() > 0.3  # the brake on the desk
     assert signals["truth"][-1, 0] > 0.1
+
+
+TRICYCLE = """\
+duration: 3
+period: 0.2
+robot: {kind: tricycle, drive: front, start: [0, 0, 0], max_steering: 0.5}
+plant: bullet
+nodes: {steering: real}
+estimator: odometry
+controller: open_loop
+reference: {kind: circle, radius: 2, speed: 0.2}
+"""
+
+
+@pytest.mark.parametrize("mode", ["csp", "pp"])
+def test_a_steering_axis_stands_at_the_angle_that_the_drive_says(tmp_path: Path, mode: str) -> None:
+    file = tmp_path / "tricycle.yaml"
+    file.write_text(TRICYCLE)
+    table = ("--table", f"hilbed402-{mode}")
+    with (
+        Hub(3) as hub,
+        drive(hub.paths[1], "--node", "2", *table) as running,
+        master(hub.paths[2], 2) as other,
+    ):
+        ready(running)
+        settings = [f"nodes.steering={{kind: real, mode: {mode}}}", *on(hub.paths[0]), *PATIENT]
+        outcome = perform(load(str(file), settings), RunFolder(tmp_path / "run", force=False), armed=True)
+        assert other.read(0x607F) == round(2.0 / (2 * pi) * 66_000)  # max_steering_rate
+    assert (outcome.verdict["reason"], outcome.verdict["events"]) == ("", [])
+    assert outcome.verdict["nodes"] == {"traction": "simulated", "steering": "real"}
+    signals = np.load(tmp_path / "run" / "signals.npz")
+    angle = signals["tick/drive/steering/angle"]
+    assert angle[-1] == pytest.approx(atan(0.5), abs=0.01)  # wheelbase 1 m, radius 2 m
+    assert np.isnan(signals["tick/drive/steering/duty"][-1])
+    assert signals["truth"][-1, 2] > 0.1
+
+
+def test_an_axis_that_is_led_catches_up_with_what_is_reported() -> None:
+    """However it came to be elsewhere, and without a lasting error."""
+
+    class Said:
+        speed, angle, current, speed_ref = 0.5, 0.0, 0.1, nan
+
+    said, axis_angle = Said(), 0.3
+    axis = RealSteeringAxis("steering", said, 7.0)
+    for k in range(1000):
+        said.angle = 0.5e-3 * k
+        axis.step(k * 1_000_000, axis_angle, 0.0, 24.0, 96)
+        assert axis.target is not None
+        axis_angle += 1e-3 * axis.target
+    assert axis_angle == pytest.approx(0.5, abs=1e-3)
+    said.speed = said.angle = nan  # a drive that has said nothing yet
+    axis.step(0, axis_angle, 0.0, 24.0, 96)
+    assert axis.target == 0.0
 
 
 def test_the_limit_is_in_the_drive_itself(tmp_path: Path) -> None:

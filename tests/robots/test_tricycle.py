@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from math import cos, inf, isfinite, nan, pi, sin, tan
+from math import copysign, cos, inf, isfinite, nan, pi, sin, tan
 
 import numpy as np
 import pytest
@@ -101,6 +101,30 @@ def test_a_quarter_turn_is_finite_for_a_rear_drive_and_exact_for_a_front_drive()
         assert v == 1.0
         assert abs(w) == pytest.approx(tan(STEEPEST))
     assert front_drive(Command(1.0, pi / 2), 2.0) == pytest.approx((0.0, 0.5), abs=1e-15)
+
+
+@given(st.sampled_from([1.0, -1.0]), st.floats(1.4, STEEPEST), st.floats(-2.0, 2.0))
+def test_near_a_right_angle_all_is_finite_and_comes_back(side: float, γ: float, v: float) -> None:
+    """As far as the axis turns, forward then inverse is the same twist, and so are the wheels' speeds."""
+    for drive in ("front", "rear"):
+        robot = tricycle(drive=drive, max_steering=STEEPEST, max_speed=100.0)
+        twist = robot.twist(Command(v, side * γ))
+        again = robot.command(*twist)
+        assert robot.twist(again) == pytest.approx(twist, rel=1e-6, abs=1e-9)
+        targets = robot.wheel_speeds(again)
+        assert all(map(isfinite, targets))
+        assert robot.travel(targets) == pytest.approx(twist, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("w", [0.4, -0.4, 1e300])
+def test_as_the_speed_vanishes_the_axis_turns_to_its_limit(w: float) -> None:
+    """The inverse has no jump towards standstill, but for the one between ahead and in reverse."""
+    limit = copysign(pi / 4, w)
+    for drive in ("front", "rear"):
+        robot = tricycle(drive=drive)
+        for v, angle in ((1e-3, limit), (0.0, limit), (-0.0, limit), (-1e-3, -limit)):
+            assert robot.command(v, w)[1] == pytest.approx(angle)
+            assert robot.twist(robot.command(v, w)) == pytest.approx((v, v * tan(angle)), abs=1e-15)
 
 
 @DRIVES

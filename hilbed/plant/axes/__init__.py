@@ -5,7 +5,7 @@ from __future__ import annotations
 from hilbed.plant.axes.axis import Axis
 from hilbed.plant.axes.ecu import EcuAxis
 from hilbed.plant.axes.mirrored import MirroredAxis
-from hilbed.plant.axes.real import RealAxis
+from hilbed.plant.axes.real import RealAxis, RealSteeringAxis
 from hilbed.plant.axes.simulated import SimulatedAxis, own_firmware
 from hilbed.plant.axes.switched import HomeSwitch, SwitchedAxis, SwitchedEcuAxis
 
@@ -15,6 +15,7 @@ __all__ = [
     "HomeSwitch",
     "MirroredAxis",
     "RealAxis",
+    "RealSteeringAxis",
     "SimulatedAxis",
     "SwitchedAxis",
     "SwitchedEcuAxis",

@@ -7,11 +7,15 @@ from typing import Protocol
 
 from hilbed.types import Nanos
 
+CATCHING_UP = 50.0
+"""1/s; so fast a steering axis here makes up for what it is away from the reported angle."""
+
 
 class Reported(Protocol):
-    """What the drive last said over the bus: rad/s and A in the wheel's direction, NaN before it spoke."""
+    """What the drive last said over the bus: rad/s, rad, A in the wheel's direction, NaN before it spoke."""
 
     speed: float
+    angle: float
     current: float
     speed_ref: float
 
@@ -52,3 +56,16 @@ class RealAxis:
         self.current = reported.current
         self.speed_ref = reported.speed_ref
         return 0.0
+
+
+class RealSteeringAxis(RealAxis):
+    """An axis that follows the angle that its drive reports: a speed alone would let the two drift apart."""
+
+    __slots__ = ()
+
+    def step(self, t: Nanos, angle: float, speed: float, volts: float, supply: int) -> float:
+        torque = super().step(t, angle, speed, volts, supply)
+        behind = self._reported.angle - angle
+        if self.target is not None and isfinite(behind):
+            self.target += CATCHING_UP * behind
+        return torque
