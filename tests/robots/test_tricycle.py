@@ -103,7 +103,7 @@ def test_a_quarter_turn_is_finite_for_a_rear_drive_and_exact_for_a_front_drive()
     assert front_drive(Command(1.0, pi / 2), 2.0) == pytest.approx((0.0, 0.5), abs=1e-15)
 
 
-@given(st.sampled_from([1.0, -1.0]), st.floats(1.4, STEEPEST), st.floats(-2.0, 2.0))
+@given(st.sampled_from([1.0, -1.0]), st.floats(1.4, STEEPEST), st.floats(1e-3, 2.0) | st.floats(-2.0, -1e-3))
 def test_near_a_right_angle_all_is_finite_and_comes_back(side: float, γ: float, v: float) -> None:
     """As far as the axis turns, forward then inverse is the same twist, and so are the wheels' speeds."""
     for drive in ("front", "rear"):
