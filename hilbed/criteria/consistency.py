@@ -80,7 +80,11 @@ def nees(signals: Signals, size: int) -> Column:
     """Returns eᵀ P⁻¹ e (N,) over the first `size` components of the pose; NaN where P is singular.
 
     Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation, section 5.4.
+    Raises Missing of a particle filter: where the robot stands its cloud shrinks to a point, and its
+    covariance is no measure of the error.
     """
+    if "cloud/t" in signals:
+        raise Missing("the covariance is that of a cloud of particles")
     error = signals["estimate"] - signals["truth"]
     error[:, 2] = turned(signals, "estimate")
     error, covariance = error[:, :size], signals["covariance"][:, :size, :size]

@@ -102,7 +102,7 @@ def _known(names: Mapping[str, str], runs: Mapping[str, Run]) -> Runs:
 
 def _short(names: list[str]) -> list[str]:
     """Returns the names without the paper's and, of many, without the first word that they share."""
-    short = [name.rpartition("/")[2] for name in names]
+    short = [tables.short(name) for name in names]
     shared = {name.partition("-")[0] for name in short}
     return [name.partition("-")[2] for name in short] if len(names) > 3 and len(shared) == 1 else short
 

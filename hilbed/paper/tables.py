@@ -18,6 +18,11 @@ NAMES = ("x, m", "y, m", "yaw, rad")
 NONE = "–"
 
 
+def short(name: str) -> str:
+    """Returns the name of a scenario without that of its paper."""
+    return name.rpartition("/")[2]
+
+
 def rows(head: Sequence[str], body: Sequence[Sequence[str]]) -> str:
     """Returns a table; numbers stand in all columns but the first."""
     top = "".join(f'<th class="number">{escape(cell)}</th>' for cell in head[1:])
@@ -82,7 +87,7 @@ def _scenario(name: str, suffixes: Sequence[str], runs: Mapping[str, Run]) -> st
         f"<tr><td>{escape(criterion)}</td>{''.join(_cells(side.get(criterion)) for side in sides)}</tr>"
         for criterion in dict.fromkeys(criterion for side in sides for criterion in side)
     )
-    return f'<tr><th colspan="{1 + 2 * len(sides)}">{escape(name)}</th></tr>{lines}' if lines else ""
+    return f'<tr><th colspan="{1 + 2 * len(sides)}">{escape(short(name))}</th></tr>{lines}' if lines else ""
 
 
 def _criteria_of(run: Run | None) -> Mapping[str, Any]:
@@ -113,7 +118,7 @@ def overview(folders: Mapping[str, str], done: Mapping[str, Done]) -> str:
     for name in names:
         cells = "".join(_mark(name + suffix, folders, done) for suffix in suffixes)
         cells += _counted(varied[name], done) if any(varied.values()) else ""
-        body += f"<tr><th>{escape(name)}</th>{cells}</tr>"
+        body += f"<tr><th>{escape(short(name))}</th>{cells}</tr>"
     return f'<div class="across"><table><tbody>{head}{body}</tbody></table></div>'
 
 

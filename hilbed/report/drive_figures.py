@@ -56,16 +56,19 @@ def efforts(run: Run) -> str | None:
         run,
         (("duty", "duty", 100.0, "%"), ("current", "current", 1.0, "A"), ("load_torque", "load", 1.0, "N m")),
         "duties, currents and load torques",
+        run.signals.drives(),
     )
 
 
 def slip(run: Run) -> str | None:
-    """Returns the slip of all wheels; None where it is absent or zero."""
-    return _stacked(run, (("slip", "slip", 100.0, "cm/s"),), "slip of the wheels")
+    """Returns the slip of all driven wheels; None where it is absent or zero."""
+    wheels = [name for name in run.signals.drives() if not _steers(run, name)]
+    return _stacked(run, (("slip", "slip", 100.0, "cm/s"),), "slip of the wheels", wheels)
 
 
-def _stacked(run: Run, fields: tuple[tuple[str, str, float, str], ...], label: str) -> str | None:
-    drives = run.signals.drives()
+def _stacked(
+    run: Run, fields: tuple[tuple[str, str, float, str], ...], label: str, drives: list[str]
+) -> str | None:
     rows = [field for field in fields if any(_moves(run, name, field[0]) for name in drives)]
     if not rows:
         return None

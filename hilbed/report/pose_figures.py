@@ -77,7 +77,8 @@ def errors(run: Run) -> str | None:
     for k, (name, unit, scale) in enumerate(names):
         t, value, limit = style.thinned(signals["t"], error[:, k] * scale, bound[:, k] * scale)
         colour = style.STAND_IN["estimate"]
-        axes[k].fill_between(t, -limit, limit, color=colour, alpha=0.14, linewidth=0, label="3 σ")
+        if np.isfinite(limit).any():  # else the estimator states none
+            axes[k].fill_between(t, -limit, limit, color=colour, alpha=0.14, linewidth=0, label="3 σ")
         axes[k].plot(t, value, color=colour, label="estimate − truth")
         axes[k].set_ylabel(f"{name}  [{unit}]")
         axes[k].set_ylim(*_limits(value, limit))

@@ -8,6 +8,7 @@ from hilbed.report import style
 from hilbed.report.run import Run
 
 _STATES = (("x  [m]", 0), ("y  [m]", 1), ("yaw  [rad]", 2))
+_LEAST = 1e-12  # determinants and singular values below it, and those on a landmark, are drawn there
 _POINTS = 600  # of a path at which the rank is looked at
 _SHOWN = ("reference", "truth", "estimate")
 
@@ -48,7 +49,7 @@ def command_labels(run: Run) -> tuple[str, str]:
 def landmark(run: Run) -> str | None:
     """Returns the estimated distance of the landmarks beside the true one; None where none is estimated."""
     signals = run.signals
-    if "landmark_distance" not in signals:
+    if not len(signals.get("landmark_distance", ())):
         return None
     figure, (axes,) = style.sheet(1, 2.2)
     t, thin = style.thinned(signals["t"], signals["landmark_distance"])
@@ -72,7 +73,7 @@ def observability(run: Run) -> str | None:
     gradients without and with steering. Both are near zero where the robot's axis passes through a landmark.
     """
     signals = run.signals
-    if "landmark_distance" not in signals:
+    if not len(signals.get("landmark_distance", ())):
         return None
     from hilbed.estimation.observability import full_determinant, full_rows
     from hilbed.estimation.sights import Survey
@@ -81,20 +82,24 @@ def observability(run: Run) -> str | None:
     path = np.column_stack((signals["truth"], np.full(len(signals["t"]), true)))[::step]
     t = signals["t"][::step]
     figure, axes = style.sheet(2, 3.6)
-    axes[0].plot(t, np.abs(full_determinant(path)), color=style.STAND_IN["truth"])
+    axes[0].plot(t, np.fmax(np.abs(full_determinant(path)), _LEAST), color=style.STAND_IN["truth"])
     axes[0].set_ylabel("|det|  [1/m⁵]")
     for steering, colour, label in ((False, "truth", "straight on"), (True, "estimate", "steering")):
-        values = [
-            np.linalg.svd(full_rows(Survey(*state), steering), compute_uv=False)[-1]
-            for state in path.tolist()
-        ]
-        axes[1].plot(t, values, color=style.STAND_IN[colour], label=label)
+        values = [_smallest(full_rows(Survey(*state), steering)) for state in path.tolist()]
+        axes[1].plot(t, np.fmax(values, _LEAST), color=style.STAND_IN[colour], label=label)
     axes[1].set_ylabel("smallest σ")
     for axis in axes:
         axis.set_yscale("log")
+        axis.minorticks_off()
     style.legend(axes[1], 2.0)
     style.on_time(axes, signals["t"], run.spans)
     return style.svg(figure, "observability along the path")
+
+
+def _smallest(rows: style.Column) -> float:
+    """Returns the smallest singular value; NaN on a landmark, whence nothing has a direction."""
+    finite = bool(np.isfinite(rows).all())
+    return float(np.linalg.svd(rows, compute_uv=False)[-1]) if finite else float("nan")
 
 
 def unjoined(yaw: style.Column) -> style.Column:

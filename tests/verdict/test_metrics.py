@@ -72,6 +72,13 @@ def test_nees_skips_rows_where_everything_is_known_exactly() -> None:
         measure(run, "nees_mean")
 
 
+def test_a_cloud_states_no_covariance_that_could_be_judged() -> None:
+    run = Signals(synthetic.signals(1.0))
+    assert {"nees_mean", "nees_position_mean"} <= set(all_metrics(run))
+    run |= {"cloud/t": np.zeros(1), "cloud/particles": np.zeros((1, 9, 3))}
+    assert not {"nees_mean", "nees_position_mean"} & set(all_metrics(run))
+
+
 def test_azimuths_are_judged_without_the_spurious_and_across_the_cut() -> None:
     true = np.array([3.1415, -1.0, 0.5, np.nan])
     residual = np.radians([0.002, 0.004, 0.006, 50.0])

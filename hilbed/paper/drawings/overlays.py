@@ -15,7 +15,7 @@ from hilbed.report.state_figures import unjoined
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = ("estimate", "odometry", "left", "right", "good", "bad", "third", "truth")
+COLOURS = ("estimate", "odometry", "left", "right", "bad", "muted", "good", "truth")
 AROUND = 0.15  # m: what is shown of the neighbourhood of the goal
 
 
