@@ -125,10 +125,9 @@ def untagged(model: type[BaseModel], path: Sequence[str | int]) -> yaml12.Path:
     inside: list[Any] = [model]
     steps: list[str | int] = []
     for step in path:
-        choices = [choice for annotation in inside for choice in _choices(annotation)]
-        if not any(step in _tags(choice) and step not in _fields(choice) for choice in choices):
+        if not any(_is_tag(annotation, step) for annotation in inside):
             steps.append(step)
-        inside = [inner for choice in choices for inner in _enter(choice, step)]
+        inside = [inner for annotation in inside for inner in _enter(annotation, step)]
     return tuple(steps)
 
 
@@ -150,13 +149,20 @@ def kinds_at(model: type[BaseModel], path: Sequence[str | int]) -> list[str]:
 
 def _enter(annotation: Any, step: str | int) -> Iterator[Any]:
     """Yields the annotations one step further in: a field's, an item's, or a union's choice by its tag."""
+    by_tag = _is_tag(annotation, step)
     for choice in _choices(annotation):
         if get_origin(choice) in (list, tuple, dict):
             yield get_args(choice)[-1]
-        elif step in _fields(choice):
-            yield _fields(choice)[step]
-        elif step in _tags(choice):
+        elif by_tag and step in _tags(choice):
             yield choice
+        elif not by_tag and step in _fields(choice):
+            yield _fields(choice)[step]
+
+
+def _is_tag(annotation: Any, step: str | int) -> bool:
+    """Tells whether a step is the kind that a union's choice is told by; it may be a field's name as well."""
+    tags = [_tags(choice) for choice in _choices(annotation)]
+    return sum(map(bool, tags)) > 1 and any(step in of for of in tags)
 
 
 def _choices(annotation: Any) -> Iterator[Any]:

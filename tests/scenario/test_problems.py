@@ -23,8 +23,13 @@ class Line(Spec):
     length: Positive = 1.0
 
 
+class Dots(Spec):
+    kind: Literal["dots"] = "dots"
+    dots: Positive = 1.0  # a key that is its own kind
+
+
 class Drawing(Spec):
-    shapes: list[Annotated[Circle | Line, Field(discriminator="kind")]] = []
+    shapes: list[Annotated[Circle | Line | Dots, Field(discriminator="kind")]] = []
     named: dict[str, Line] = {}
     scale: Positive = 1.0
 
@@ -56,7 +61,7 @@ def test_every_problem_is_told_at_once_in_the_order_of_the_file() -> None:
         "f.yaml:1: scale: input should be greater than 0, given -1",
         "f.yaml:3: shapes.0.radius is missing",
         "f.yaml:4: unknown key 'radios'; did you mean 'radius'?",
-        "f.yaml:5: shapes.1: unknown kind 'square'; known: circle, line",
+        "f.yaml:5: shapes.1: unknown kind 'square'; known: circle, dots, line",
         "f.yaml:6: shapes.2.length: input should be a valid number, given 'long'",
         "f.yaml:8: unknown key 'lenght'; did you mean 'length'?",
     ]
@@ -71,7 +76,14 @@ def test_what_is_not_in_the_file_is_blamed_on_the_setting_that_made_its_block() 
     assert tell("scale: 1\n", "named.a.lenght=1").startswith("--set named.a.lenght=1: unknown key 'lenght'")
     assert tell("scale: 1\n", "shapez.0=1").startswith("--set shapez.0=1: unknown key 'shapez'")
     assert tell("shapes: [{kind: line}]\n", "shapes.0.kind=cube").startswith("--set shapes.0.kind=cube: ")
-    assert tell("shapes: [{}]\n", "scale=2") == "f.yaml:1: shapes.0 needs a kind: one of circle, line"
+    assert tell("shapes: [{}]\n", "scale=2") == "f.yaml:1: shapes.0 needs a kind: one of circle, line, dots"
+
+
+def test_a_key_may_have_the_name_of_its_kind() -> None:
+    assert tell("shapes: [{kind: dots, dots: 0}]\n") == (
+        "f.yaml:1: shapes.0.dots: input should be greater than 0, given 0"
+    )
+    assert tell("shapes: [{kind: dots, dotz: 1}]\n").endswith("unknown key 'dotz'; did you mean 'dots'?")
 
 
 @pytest.mark.parametrize("given", ["'1'", "true", "[1]", "{a: 1}", "null"])
