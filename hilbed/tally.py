@@ -1,8 +1,23 @@
-"""What estimators and controllers count besides what they return, for verdict.json and the report."""
+"""What estimators, controllers and sensors count besides what they return, for verdict and report."""
 
 from __future__ import annotations
 
 from typing import Protocol, runtime_checkable
+
+ABOUT = {
+    "ignored": "odometry and readings that could not be used: not finite, of another kind, out of their time",
+    "singular": "bearings of a landmark on the robot's axis, which hardly tell its distance",
+    "held": "bearings while the estimated distance of their landmark was at its least or largest",
+    "restarted": "covariances that were not positive; that of the start took their place",
+    "touching": "landmarks that the sensor stood on: in no direction, or with no gradient",
+    "unexplained": "readings that gave every particle the weight zero and left the cloud as it was",
+    "recovered": "clouds drawn anew after several of those",
+    "effective": "effective sample size at the last reading",
+    "beyond": "cycles with a heading error for which the law was not made",
+    "limited": "cycles in which the robot's limits of speed and steering did not allow what was asked for",
+    "standing": "cycles in which a steered robot was to turn without moving: the wheel turned and waited",
+}
+"""What the counters mean, by their names."""
 
 
 @runtime_checkable

@@ -67,7 +67,7 @@ def _figures(run: Run) -> str:
             page.card("Bus load in each 0.1 s", bus_figures.bus_load(run)),
             page.card("Bus latency by identifier", bus_figures.latency(run)),
             page.card("Real time", time_figures.lateness(run), time_figures.summary(run)),
-            page.card("Counted", page.counts(run)),
+            page.card("Counted", page.counts(run), wide=True),
         ]
     return "".join(cards)
 

@@ -12,6 +12,7 @@ from hilbed.criteria import METRICS
 from hilbed.record.folder import CAN, MCAP, SIGNALS, VERDICT
 from hilbed.report.run import Run, Shot, Span
 from hilbed.report.style import COLOURS, Theme
+from hilbed.tally import ABOUT
 
 _PARTS = ("#6b8afd", "#42b3a4", "#e2a03f", "#d9698a", "#9a7bd8", "#5fa8d3", "#8fb04e", "#9aa5b4", "#c3c9d2")
 
@@ -150,14 +151,15 @@ def _metric(name: str, value: float | None) -> str:
 
 
 def counts(run: Run) -> str | None:
-    """Returns what estimator and controller have counted."""
+    """Returns what estimator, controller and sensors have counted, and what that means."""
     rows = "".join(
         f'<tr><th>{escape(part)}</th><td>{escape(name)}</td><td class="number">'
-        f"{'none' if value is None else _number(value)}</td></tr>"
+        f"{'none' if value is None else _number(value)}</td>"
+        f'<td class="about">{escape(ABOUT.get(name, ""))}</td></tr>'
         for part, found in (run.verdict.get("counts") or {}).items()
         for name, value in found.items()
     )
-    return f"<table><tbody>{rows}</tbody></table>" if rows else None
+    return f'<table class="metrics"><tbody>{rows}</tbody></table>' if rows else None
 
 
 def files(run: Run) -> str:

@@ -17,6 +17,7 @@ from hilbed.plant import PlantSpec
 from hilbed.robots import ROBOTS
 from hilbed.scenario.load import load
 from hilbed.sensors import SensorSpec
+from hilbed.tally import ABOUT
 from hilbed.types import ScenarioError
 from tests.bench import ran
 from tests.build.test_kinds import kinds
@@ -94,6 +95,7 @@ def test_it_runs_or_is_refused_with_every_reason(
             run = ran(file)
             assert (run.status, run.verdict["reason"]) == (0, ""), (controller, reference)
             assert all(np.isfinite(run.signals[name]).all() for name in ("truth", "estimate", "command"))
+            assert all(set(counts) <= set(ABOUT) for counts in run.verdict["counts"].values())
 
 
 SENSORS = {
