@@ -11,6 +11,7 @@ _NUMBERS = (
     ("load", "NM", 0.0, "torque at the wheel against forward rotation"),
     ("friction", "NM", 0.0, "dry friction at the wheel, besides the motor's"),
     ("supply", "V", 24.0, "open-circuit voltage of the supply"),
+    ("angle", "RAD", 0.0, "where the shaft stands at first"),
 )
 
 
@@ -23,6 +24,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     for name, unit, default, text in _NUMBERS:
         help = f"{text} ({default:g})"
         parser.add_argument(f"--{name}", type=float, default=default, metavar=unit, help=help)
+    text = "shaft's angle from which on its home switch is on (none)"
+    parser.add_argument("--switch", type=float, metavar="RAD", help=text)
     parser.add_argument(
         "--table", default="hilbed402", metavar="NAME", help="whose encoder it has (hilbed402)"
     )

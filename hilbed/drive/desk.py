@@ -10,6 +10,7 @@ from firmware_sim import Drive
 from hilbed.clock import MILLISECOND
 from hilbed.drive.shaft import Shaft
 from hilbed.plant import pins
+from hilbed.plant.axes import HomeSwitch
 from hilbed.plant.chopper import Averaged
 from hilbed.plant.drivetrain import DriveTrain, reflected_inertia
 from hilbed.plant.encoder import Encoder, EncoderSpec
@@ -31,7 +32,8 @@ class Build:
 
     inertia: kg m² at the wheel, rotor and gear come on top; load: N m at the wheel against forward rotation;
     friction: N m at the wheel, dry, besides the motor's own; counts: of the encoder, a turn of the wheel;
-    supply: V, open circuit.
+    supply: V, open circuit; angle: rad, where the shaft stands at first; switch: rad, from which angle on its
+    home switch is on, None for none.
     """
 
     node: int
@@ -42,6 +44,8 @@ class Build:
     friction: float = 0.0
     counts: int = DEFAULT_COUNTS
     supply: float = 24.0
+    angle: float = 0.0
+    switch: float | None = None
 
 
 class Desk:
@@ -52,6 +56,9 @@ class Desk:
         self.firmware = Drive(build.node, stored=_plate(build))
         self._train = DriveTrain(build.motor, build.gear, Averaged(), _DT, inertia)
         self.shaft = Shaft(inertia, build.load, build.friction + self._train.coulomb, _DT)
+        self.shaft.angle = build.angle
+        self._switch = None if build.switch is None else HomeSwitch(build.switch)
+        self._inputs = 0
         self._encoder = Encoder(EncoderSpec(resolution=build.counts), _DT)
         self._supply = Supply(SupplySpec(voltage=build.supply))
 
@@ -64,6 +71,8 @@ class Desk:
         firmware, train, shaft = self.firmware, self._train, self.shaft
         for frame in frames:
             firmware.on_frame(t, frame)
+        if self._switch is not None:
+            self._read(self._switch.inputs(shaft.angle))
         volts = self._supply.voltage(train.supply_current, 0.0)
         counts = self._encoder.sample(shaft.angle)
         duty = firmware.tick(t, counts, pins.current(train.current), pins.supply(volts))
@@ -71,6 +80,11 @@ class Desk:
         sent = cast("list[Frame]", [*firmware.outbox])  # frames with the same fields
         firmware.outbox.clear()
         return sent
+
+    def _read(self, inputs: int) -> None:
+        if inputs != self._inputs:
+            self._inputs = inputs
+            self.firmware.read(inputs)
 
 
 def _plate(build: Build) -> dict[tuple[int, int], float]:

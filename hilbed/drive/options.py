@@ -18,6 +18,8 @@ _LIMITS: dict[str, TypeAdapter[float]] = {
     "load": TypeAdapter(Finite),
     "friction": TypeAdapter(NonNegative),
     "supply": TypeAdapter(Positive),
+    "angle": TypeAdapter(Finite),
+    "switch": TypeAdapter(Finite),
 }
 
 
@@ -27,7 +29,8 @@ def build_of(options: argparse.Namespace) -> Build:
     if not 1 <= options.node <= 127:
         problems.append(f"--node {options.node}: a node's number is 1 to 127")
     for name, limit in _LIMITS.items():
-        problems += _refused(f"--{name}", getattr(options, name), limit)
+        if getattr(options, name) is not None:
+            problems += _refused(f"--{name}", getattr(options, name), limit)
     if options.motor not in MOTORS:
         problems.append(f"--motor {options.motor}: the catalogue has {', '.join(MOTORS)}")
     gear = _gear(options.gear)
@@ -48,6 +51,8 @@ def build_of(options: argparse.Namespace) -> Build:
         options.friction,
         round(units.counts_per_turn * units.gear),
         options.supply,
+        options.angle,
+        options.switch,
     )
 
 

@@ -123,3 +123,26 @@ def test_what_its_maker_has_stored_survives_a_reset() -> None:
     (answer,) = (frame for frame in sent if frame.id == 0x581)
     assert struct.unpack("<I", answer.data[4:]) == (8000,)
     assert desk.firmware._axis.settings.max_speed == pytest.approx(210_000 / 66_000 * 2 * pi, rel=1e-4)
+
+
+@pytest.mark.parametrize("angle", [-0.2, 0.4])
+def test_a_steering_axis_finds_its_home_switch(angle: float) -> None:
+    """Method 19, by SDO: afterwards the position is the angle from the switch."""
+    desk = Desk(Build(5, angle=angle, switch=0.1))
+    orders = [(0x6098, 1, 19), (0x6060, 1, 6), *((0x6040, 2, word) for word in (0x06, 0x07, 0x0F, 0x1F))]
+    for k in range(6000):
+        order = orders[k - 1] if 0 < k <= len(orders) else None  # its power comes with the first tick
+        frames = (
+            [] if order is None else [download_frame(5, order[0], 0, order[2].to_bytes(order[1], "little"))]
+        )
+        desk.tick(k * TICK, frames)
+    position = struct.unpack("<i", _asked(desk, 0x6064))[0] / 66_000 * tau
+    assert desk.shaft.angle - position == pytest.approx(0.1, abs=3e-4)
+    assert desk.shaft.angle == pytest.approx(0.1, abs=0.02)
+
+
+def _asked(desk: Desk, index: int) -> bytes:
+    """Returns the four bytes that an object holds."""
+    request = Frame(0x605, bytes((0x40, index & 0xFF, index >> 8, 0, 0, 0, 0, 0)))
+    sent = desk.tick(10_000 * TICK, [request])
+    return next(frame.data for frame in sent if frame.id == 0x585)[4:]
