@@ -34,6 +34,8 @@ FACING_BACK = "robot.start=[-20, 3, 2.5]"
 EXACT = ("estimator.position_std=0.0001", "estimator.yaw_std=0.00001")  # no particle is that near
 VAGUE = ("initial_std: [1.0e+6, 1.0e+6, 1.0e+6]", "azimuth: {std: 1.0e-9}", "range: {std: 1.0e-9}")
 ROUNDED_OFF = f"estimator={{kind: ekf, {', '.join(VAGUE)}}}"  # 30 digits between doubt and noise
+SURE = "sensors.landmarks={kind: bearing, rate: 100, noise: 0.01}"  # of its bearings, far too much
+FAR_OFF = ("estimator={kind: bearing_survey, distance_std: 1.0e+9, std: 1.0e-9}", SURE, "period=0.01")
 TURNED = ("controller=lqr", "reference={kind: line, acceleration: 1}", "robot.start=[0, 0, 0.3]")
 
 CASES = [
@@ -89,6 +91,7 @@ CASES = [
         1,
     ),
     ("covariance not positive", BUI + "ekf", (ROUNDED_OFF,), "estimator/restarted", 1),
+    ("covariance not positive", ISHIKAWA + "estimation-ekf", FAR_OFF, "estimator/restarted", 1),
     ("NaN", ISHIKAWA + "estimation-elo", (nan_of("landmarks"),), "estimator/ignored", 2000),
     ("NaN", BUI + "ekf", (nan_of("landmarks"),), "estimator/ignored", 40),
     ("NaN", BUI + "closed-loop", (nan_of("pose"),), "estimator/ignored", 10),

@@ -11,7 +11,7 @@ from hilbed.estimation.dead_reckoning import DeadReckoning
 from hilbed.estimation.ekf import Ekf
 from hilbed.estimation.specs import DeadReckoningSpec, EkfSpec
 from hilbed.types import Odometry, Reading
-from tests.estimation.experiment import BEACONS, PERIOD, START
+from tests.estimation.experiment import BEACONS, PERIOD, START, experiment
 
 anything = st.one_of(st.floats(), st.sampled_from([nan, inf, -inf, 0.0, 1e300, -1e300]))
 kinds = st.sampled_from(["azimuth", "range", "position", "rubbish"])
@@ -80,3 +80,28 @@ def test_dead_reckoning_holds_still_on_what_it_cannot_use() -> None:
     estimate = reckoning.step(0, Odometry(0, nan, 0.1, nan, nan), [])
     assert reckoning.ignored == 1
     assert estimate.mean == pytest.approx(START)
+
+
+@pytest.mark.parametrize("kind", ["azimuth", "range"])
+def test_a_beacon_under_the_sensor_is_counted_and_leaves_finite_numbers(kind: str) -> None:
+    ekf = Ekf(EkfSpec(gate=None), [START[:2], *BEACONS], START)
+    reading = Reading(kind, 0, 0, (0.3,), (0.01,), 0)
+    estimate = ekf.step(0, Odometry(0, 0.0, 0.0, 0.0, 0.0), [reading])
+    assert ekf.counts() == {"ignored": 0, "touching": 1, "restarted": 0}
+    assert np.isfinite(estimate.mean).all()
+    assert np.linalg.eigvalsh(estimate.covariance).min() > 0
+
+
+def test_a_covariance_that_round_off_spoils_starts_afresh_and_is_counted() -> None:
+    """Thirty decimal digits between doubt and noise; without the check NIS and variances turn negative."""
+    spec = EkfSpec.model_validate(
+        {"initial_std": (1e6, 1e6, 1e6), "range": {"std": 1e-9}, "azimuth": {"std": 1e-9}, "gate": None}
+    )
+    ekf, innovations, least = Ekf(spec, BEACONS, START), [], inf
+    for step in experiment(1, 40, kinds=("azimuth", "range")):
+        estimate = ekf.step(step.t, step.odometry, step.readings)
+        innovations += [innovation.nis for innovation in estimate.innovations]
+        least = min(least, float(estimate.covariance.diagonal().min()))
+    assert ekf.restarted > 0
+    assert min(innovations) >= 0
+    assert least > 0
