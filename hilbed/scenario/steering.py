@@ -18,8 +18,8 @@ Problems = Iterator[Problem]
 METHODS = (19, 20)
 """Of homing: those that look for a home switch that is on from an angle on."""
 
-OF_WHEELS = ("step_overshoot", "load_dip", "load_recovery", "slip_max")
-"""Metrics of a drive that is told a speed, or that rolls."""
+OF_WHEELS = ("speed_rms_error", "step_overshoot", "load_dip", "load_recovery", "slip_max")
+"""Metrics of a drive that is told a speed, or that rolls; `criteria.drives` finds none for the axis."""
 
 
 def _axis(plant: PlantSpec, robot: RobotSpec) -> Problems:
