@@ -15,6 +15,7 @@ from hilbed.types import Array
 SLIP, ENCODER, MODEL = "slip", "encoder resolution and latency", "odometry integration and geometry"
 ODOMETRY = "odometry"
 STEERING = "steering"
+NOTHING = 1e-9  # m, rad, m/s, rad/s
 
 
 class Steps(NamedTuple):
@@ -33,7 +34,9 @@ class Steps(NamedTuple):
 
     @property
     def sources(self) -> tuple[str, ...]:
-        return (ODOMETRY,) if self.exact is None else (SLIP, ENCODER, MODEL)
+        if self.exact is not None:
+            return SLIP, ENCODER, MODEL
+        return (ODOMETRY,) if np.abs(self.measured - self.true).max() > NOTHING else ()
 
     def replaced(self, sources: frozenset[str]) -> Array:
         """Returns the rows with the named sources replaced by truth."""

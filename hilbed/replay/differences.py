@@ -33,6 +33,7 @@ def differences(recorded: Signals, replayed: Signals) -> list[Difference]:
 
     Not compared: what only the plant knows, and what it has written over (drive/NAME/speed_ref).
     """
+    recorded, replayed = _ordered(recorded), _ordered(replayed)
     found = [
         _difference(name, _times(name, recorded, replayed), recorded.get(name), replayed[name])
         for name in compared(replayed)
@@ -43,6 +44,18 @@ def differences(recorded: Signals, replayed: Signals) -> list[Difference]:
 def compared(replayed: Signals) -> list[str]:
     """Returns the columns that are compared."""
     return [name for name in replayed if name not in UNKNOWN and not name.endswith("/speed_ref")]
+
+
+def _ordered(signals: Signals) -> Signals:
+    """Returns the signals with the innovations of a moment in an order of their own.
+
+    A record has a column for each kind of readings, so in which order two kinds arrived together is lost.
+    """
+    columns = {name: column for name, column in signals.items() if name.startswith("nis/")}
+    if not columns:
+        return signals
+    order = np.lexsort((columns["nis/value"], columns["nis/dof"], columns["nis/t"]))
+    return {**signals, **{name: column[order] for name, column in columns.items()}}
 
 
 def _times(name: str, recorded: Signals, replayed: Signals) -> npt.NDArray[Any]:

@@ -29,7 +29,7 @@ def table(run: Run) -> str | None:
         found = attribute(load(str(run.folder / SCENARIO)), run.signals)
     except HilbedError:
         return None
-    if found is None:
+    if found is None or not found.shares:
         return None
     write_whole(run.folder / FILE, (json.dumps(as_dict(found), indent=2) + "\n").encode())
     most = max((s.alone.position for s in found.shares if isfinite(s.alone.position)), default=0.0)

@@ -55,3 +55,14 @@ def test_rows_and_numbers_that_one_side_lacks_differ_infinitely() -> None:
     short = {"t": T[:3], "a": was[:3]}
     assert differences(_signals(a=was), short) == [Difference("a", T[3], np.inf, T[3])]
     assert differences(_signals(), _signals(a=was))[0].largest == np.inf
+
+
+def test_innovations_of_a_moment_have_no_order() -> None:
+    def nis(*values: float) -> dict[str, np.ndarray]:
+        t, dof = np.array([0.1, 0.2, 0.2]), np.array([1, 1, 1])
+        return _signals(
+            **{"nis/t": t, "nis/value": np.array(values), "nis/dof": dof, "nis/accepted": dof > 0}
+        )
+
+    assert differences(nis(3.0, 1.0, 2.0), nis(3.0, 2.0, 1.0)) == []
+    assert [found.column for found in differences(nis(3.0, 1.0, 2.0), nis(1.0, 3.0, 2.0))] == ["nis/value"]
