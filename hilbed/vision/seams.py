@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import nan
-from typing import NamedTuple, Protocol
+from typing import Literal, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
-from hilbed.types import Image, Nanos, Pose
+from hilbed.types import HilbedError, Image, Nanos, Pose
 from hilbed.vision.lens import Lens
 
 
@@ -35,12 +36,53 @@ class Detection(NamedTuple):
     row: float = nan
 
 
+Failure: TypeAlias = Literal["raised", "invalid", "late", "died", "skipped"]
+
+
+class DetectionFailed(HilbedError):
+    """A detector has no answer for one frame; the frame is left out and the bench goes on.
+
+    failure: raised an exception; invalid: gave back what is no list of detections; late: missed its deadline;
+    died: its process has ended; skipped: was not asked any more. said: what it has printed since its last
+    answer.
+    """
+
+    def __init__(self, failure: Failure, text: str, said: str = "") -> None:
+        super().__init__(text)
+        self.failure, self.said = failure, said
+
+
 class Detector(Protocol):
     """Finds beacons in an image and knows nothing else."""
 
     def detect(self, shot: Shot) -> list[Detection]:
-        """Returns what is seen, from left to right."""
+        """Returns what is seen, from left to right; raises DetectionFailed where it has no answer."""
         ...
+
+
+@runtime_checkable
+class Closing(Protocol):
+    """A detector, or a camera, that holds something to be given back, such as a process of its own."""
+
+    def close(self) -> None: ...
+
+
+class Source(Protocol):
+    """A camera that nobody renders for: an image folder, a video, a live camera, a recorded run.
+
+    lens: of every frame; name: for messages.
+    """
+
+    name: str
+
+    @property
+    def lens(self) -> Lens: ...
+
+    def frames(self) -> Iterator[Shot]:
+        """Yields what it has, in order of time; raises HilbedError for a frame that cannot be used."""
+        ...
+
+    def close(self) -> None: ...
 
 
 class Viewpoint(NamedTuple):
