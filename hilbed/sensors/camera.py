@@ -14,7 +14,8 @@ from hilbed.effects import Effects
 from hilbed.ports import Witness
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.delivery import Delivery, DeliverySpec
-from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Ticket
+from hilbed.sensors.exposure import still
+from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Place, Ticket
 from hilbed.sensors.faults import misses, noisy, spurious
 from hilbed.sensors.pan import make_pan
 from hilbed.sensors.pan_spec import FixedSpec, PanSpec
@@ -67,7 +68,7 @@ class CameraSpec(DeliverySpec):
         return {"azimuth": 1}
 
 
-class Exposure(NamedTuple):
+class UnderWay(NamedTuple):
     """A frame under way: at a pan angle (rad, robot's frame), with a mean number of false detections."""
 
     t: Nanos
@@ -93,7 +94,7 @@ class Camera:
         self._names = names(spec, eye.beacons)
         self._pan = make_pan(spec.pan, self._names)
         self._delivery = Delivery(spec, rng)
-        self._under_way: Exposure | None = None
+        self._under_way: UnderWay | None = None
 
     @property
     def due(self) -> Nanos:
@@ -109,7 +110,8 @@ class Camera:
             self._pan.saw([])
             return
         false = self._spec.spurious + self._effects.spurious
-        self._under_way = Exposure(truth.t, delivered, pan, false, self._eye.look(truth.pose, pan))
+        ticket = self._eye.look(still(truth.t, truth.pose, pan))
+        self._under_way = UnderWay(truth.t, delivered, pan, false, ticket)
 
     def read(self, t: Nanos) -> list[Reading]:
         """Returns the azimuths delivered up to and including t since the last call, oldest first."""
@@ -120,19 +122,19 @@ class Camera:
     def flush(self) -> None:
         """Takes the frame that is under way, if any, from the eye, and tells the witness; once at the end."""
         if self._under_way is not None:
-            exposure, glimpse = self._under_way, self._under_way.ticket()
+            frame, glimpse = self._under_way, self._under_way.ticket()
             self._under_way = None
-            self._develop(exposure, glimpse)
+            self._develop(frame, glimpse)
 
     def close(self) -> None:
         """Gives back what the eye holds; a frame under way is lost."""
         self._under_way = None
         self._eye.close()
 
-    def _develop(self, exposure: Exposure, glimpse: Glimpse) -> None:
+    def _develop(self, frame: UnderWay, glimpse: Glimpse) -> None:
         """Sends a frame's azimuths on their way, with all that goes wrong with them."""
         start = perf_counter()
-        t, delivered, pan, false, _ = exposure
+        t, delivered, pan, false, _ = frame
         findings = self._faulty(glimpse.findings, false)
         self._pan.saw([finding.detection for finding in findings])
         readings = [azimuth(t, delivered, pan, finding.detection) for finding in findings]
@@ -192,4 +194,4 @@ def open_eye(spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, separa
     lens = spec.lens
     renderer = BulletRenderer(lens, Scenery(beacons, spec.renderer == "egl", spec.ground), cost)
     detector = ColourDetector(lens, beacons, spec.identity == "anonymous")
-    return LocalEye(spec.mount, beacons, renderer, detector, cost)
+    return LocalEye(Place(spec.mount, lens), beacons, renderer, detector, cost)

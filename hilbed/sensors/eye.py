@@ -8,11 +8,20 @@ from typing import NamedTuple, Protocol, TypeAlias
 
 from hilbed.cost import Cost, perf_counter
 from hilbed.scene import BeaconSpec
+from hilbed.sensors.exposure import Exposure, Moment
 from hilbed.types import Image, Pose
-from hilbed.vision.seams import Detection, Detector, Renderer
+from hilbed.vision.lens import Lens
+from hilbed.vision.seams import Detection, Detector, Renderer, Shot, Viewpoint
 from hilbed.vision.truth import SPURIOUS, match, sights
 
 Mount = tuple[float, float, float]
+
+
+class Place(NamedTuple):
+    """A camera on its robot: optical centre (m, robot's frame) and lens."""
+
+    mount: Mount
+    lens: Lens
 
 
 class Finding(NamedTuple):
@@ -43,8 +52,8 @@ class Eye(Protocol):
     beacons: tuple[BeaconSpec, ...]
     cost: Cost
 
-    def look(self, pose: Pose, pan: float) -> Ticket:
-        """Exposes a frame from the robot's pose with the camera turned by `pan` (rad, robot's frame)."""
+    def look(self, exposure: Exposure) -> Ticket:
+        """Exposes a frame."""
         ...
 
     def close(self) -> None:
@@ -53,29 +62,30 @@ class Eye(Protocol):
 
 
 class LocalEye:
-    """Renders what is seen from the mount (m, robot's frame) and runs the detector on it, at once.
+    """Renders what is seen from its place and runs the detector on it, at once.
 
     beacons: those that renderer and detector know; cost: the renderer's.
     """
 
     def __init__(
-        self, mount: Mount, beacons: Sequence[BeaconSpec], renderer: Renderer, detector: Detector, cost: Cost
+        self, place: Place, beacons: Sequence[BeaconSpec], renderer: Renderer, detector: Detector, cost: Cost
     ) -> None:
         self.beacons = tuple(beacons)
         self.cost = cost
-        self._mount = mount
+        self._mount, self._lens = place
         self._renderer = renderer
         self._detector = detector
 
-    def look(self, pose: Pose, pan: float) -> Ticket:
-        """Exposes a frame from the robot's pose with the camera turned by `pan` (rad, robot's frame)."""
+    def look(self, exposure: Exposure) -> Ticket:
+        """Exposes a frame."""
         cost = self.cost
         start, rendered = perf_counter(), cost.render
-        forward, left, height = self._mount
-        c, s = cos(pose.yaw), sin(pose.yaw)
-        x, y = pose.x + c * forward - s * left, pose.y + s * forward + c * left
-        image = self._renderer.render(x, y, height, pose.yaw + pan)
-        glimpse = Glimpse(image, self._findings(image, Pose(x, y, pose.yaw), pan))
+        moment = exposure.at(exposure.t)
+        view = viewpoint(self._mount, moment)
+        image = self._renderer.render(view, exposure.t)
+        centre = Pose(view.x, view.y, moment.pose.yaw)
+        shot = Shot(image, exposure.t, self._lens)
+        glimpse = Glimpse(image, self._findings(shot, centre, moment.pan))
         cost.vision += perf_counter() - start - (cost.render - rendered)
         return lambda: glimpse
 
@@ -83,12 +93,20 @@ class LocalEye:
         """Gives back what the renderer holds."""
         self._renderer.close()
 
-    def _findings(self, image: Image, centre: Pose, pan: float) -> list[Finding]:
+    def _findings(self, shot: Shot, centre: Pose, pan: float) -> list[Finding]:
         """Returns what the detector finds, beside the truth as seen from the optical centre."""
         seen = sights(self.beacons, *centre)
         found = []
-        for detection in self._detector.detect(image):
+        for detection in self._detector.detect(shot):
             beacon = match(pan + detection.azimuth, seen)
             azimuth = nan if beacon == SPURIOUS else seen[beacon].azimuth
             found.append(Finding(detection, beacon, azimuth))
         return found
+
+
+def viewpoint(mount: Mount, moment: Moment) -> Viewpoint:
+    """Returns where a camera on `mount` (m, robot's frame) is and looks."""
+    forward, left, height = mount
+    (x, y, yaw), pan = moment.pose, moment.pan
+    c, s = cos(yaw), sin(yaw)
+    return Viewpoint(x + c * forward - s * left, y + s * forward + c * left, height, yaw + pan)

@@ -18,8 +18,9 @@ import numpy as np
 
 from hilbed.cost import Cost, perf_counter
 from hilbed.scene import BeaconSpec
+from hilbed.sensors.exposure import Exposure
 from hilbed.sensors.eye import Glimpse, Ticket
-from hilbed.types import HilbedError, Image, Pose
+from hilbed.types import HilbedError, Image
 
 if TYPE_CHECKING:
     from hilbed.sensors.camera import CameraSpec
@@ -64,13 +65,13 @@ class RemoteEye:
         """The child's process number."""
         return self._process.pid
 
-    def look(self, pose: Pose, pan: float) -> Ticket:
-        """Has a frame exposed from the robot's pose with the camera turned by `pan` (rad, robot's frame)."""
+    def look(self, exposure: Exposure) -> Ticket:
+        """Has a frame exposed."""
         if self._asked:
             raise RuntimeError("the frame before has not been taken yet")
         self._meet()
         start = perf_counter()
-        self._send((pose, pan))
+        self._send(exposure)
         self._asked = True
         self.cost.vision += perf_counter() - start
         return self._take

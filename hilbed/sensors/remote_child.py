@@ -44,16 +44,16 @@ def answers(asked: Iterator[Any], shared: Image) -> Iterator[object]:
 def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     """Yields None when the eye is ready; then, with each image in `shared`, findings and seconds it took.
 
-    asked: first spec and beacons, then pose and pan of each frame.
+    asked: first spec and beacons, then the exposure of each frame.
     """
     spec, beacons = next(asked)
     cost, processors = Cost(), os.sched_getaffinity(0)
     eye = open_eye(spec, beacons, cost)
     yield None
-    for pose, pan in asked:
+    for exposure in asked:
         step_aside(processors)
         render, vision = cost.render, cost.vision
-        image, findings = eye.look(pose, pan)()
+        image, findings = eye.look(exposure)()
         np.copyto(shared.reshape(image.shape), image)
         yield findings, cost.render - render, cost.vision - vision
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from hilbed.scene import BeaconSpec
-from hilbed.types import Array, Image
+from hilbed.types import Array
 from hilbed.vision.colour import Palette
 from hilbed.vision.lens import Lens
 from hilbed.vision.runs import Indices, Runs, bounds, find_runs, gather
-from hilbed.vision.seams import Detection
+from hilbed.vision.seams import Detection, Shot
 
 FEWEST_ROWS = 3
 ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a straight line, hardly ever more
@@ -47,9 +47,9 @@ class ColourDetector:
         self._slope = np.abs(self._drop)
         self._focal = lens.focal
 
-    def detect(self, image: Image) -> list[Detection]:
-        """Returns what is seen in an (H, W, 3) RGB image, from left to right."""
-        runs = find_runs(image, self._palette)
+    def detect(self, shot: Shot) -> list[Detection]:
+        """Returns what is seen, from left to right."""
+        runs = find_runs(shot.image, self._palette)
         if runs.row.size == 0:
             return []
         runs, blob = self._trim(*gather(runs))

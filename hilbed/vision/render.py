@@ -1,4 +1,4 @@
-"""Draws the beacons as a level camera sees them, in a PyBullet client of its own that holds nothing else."""
+"""Draws the beacons as a camera sees them, in a PyBullet client of its own that holds nothing else."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import atan2, cos, sin
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TypeAlias
+from typing import Any, TypeAlias
 from weakref import finalize
 
 import cv2
@@ -17,17 +17,17 @@ import numpy as np
 from hilbed.cost import Cost, perf_counter
 from hilbed.quiet import muted
 from hilbed.scene import COLOURS, BeaconSpec, Colour
-from hilbed.types import Image, ScenarioError
+from hilbed.types import Image, Nanos, ScenarioError
 from hilbed.vision import egl
 from hilbed.vision.cone import obj
-from hilbed.vision.lens import Lens
+from hilbed.vision.opengl import FAR, Pinhole, look, projection
+from hilbed.vision.seams import Viewpoint
 
 with muted():
     import pybullet
 
 Quiet: TypeAlias = Callable[[], AbstractContextManager[None]]
 
-NEAR, FAR = 0.02, 200.0
 GROUND: Colour = (0.6, 0.6, 0.6)
 _SQUARE = f"v {-FAR} {-FAR} 0\nv {FAR} {-FAR} 0\nv {FAR} {FAR} 0\nv {-FAR} {FAR} 0\nf 1 2 3 4\n"
 
@@ -36,7 +36,7 @@ _SQUARE = f"v {-FAR} {-FAR} 0\nv {FAR} {-FAR} 0\nv {FAR} {FAR} 0\nv {-FAR} {FAR}
 _TINY_EDGES = (0.0, -1.0)
 _EGL_EDGES = (-0.5, -0.5)
 
-_FAST = {"renderer": pybullet.ER_TINY_RENDERER, "flags": pybullet.ER_NO_SEGMENTATION_MASK}
+_TINY = {"renderer": pybullet.ER_TINY_RENDERER}
 # Flat, exact colours: what the detector gets is the colour of the beacon.
 _LIGHT = {"shadow": 0, "lightAmbientCoeff": 1.0, "lightDiffuseCoeff": 0.0, "lightSpecularCoeff": 0.0}
 
@@ -57,7 +57,7 @@ class BulletRenderer:
     not work or is too small. Several renderers may live in one process.
     """
 
-    def __init__(self, lens: Lens, scenery: Scenery, cost: Cost) -> None:
+    def __init__(self, lens: Pinhole, scenery: Scenery, cost: Cost) -> None:
         if scenery.egl:
             egl.require(lens)
         self._lens = lens
@@ -71,28 +71,39 @@ class BulletRenderer:
             egl.load(self._client)
         self._projection = projection(lens, _EGL_EDGES if scenery.egl else _TINY_EDGES)
         self._beacons = self._load(scenery)
+        self._label = _labels([body for body, *_ in self._beacons])
 
-    def render(self, x: float, y: float, z: float, yaw: float) -> Image:
-        """Returns (H, W, 3) RGB as seen from x, y, z (m, map) along `yaw` (rad, map)."""
-        client, lens, cost = self._client, self._lens, self._cost
-        for body, bx, by in self._beacons:
-            half = 0.5 * atan2(y - by, x - bx)
-            pybullet.resetBasePositionAndOrientation(
-                body, (bx, by, 0.0), (0.0, 0.0, sin(half), cos(half)), physicsClientId=client
-            )
-        view = look(x, y, z, yaw)
-        with self._quiet():
-            start = perf_counter()
-            picture = pybullet.getCameraImage(
-                lens.width, lens.height, view, self._projection, **_LIGHT, **_FAST, physicsClientId=client
-            )
-            cost.render += perf_counter() - start
-        rgba = np.asarray(picture[2], np.uint8).reshape(lens.height, lens.width, 4)
-        return np.asarray(cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB), np.uint8)
+    def render(self, view: Viewpoint, t: Nanos) -> Image:
+        """Returns (H, W, 3) RGB as seen from `view` at t."""
+        rgba = self._picture(view, t, pybullet.ER_NO_SEGMENTATION_MASK)[2]
+        image = np.asarray(rgba, np.uint8).reshape(self._lens.height, self._lens.width, 4)
+        return np.asarray(cv2.cvtColor(image, cv2.COLOR_RGBA2RGB), np.uint8)
+
+    def labels(self, view: Viewpoint, t: Nanos) -> Image:
+        """Returns (H, W): 0 where no beacon is seen, k + 1 where that of index k is."""
+        bodies = np.asarray(self._picture(view, t, 0)[4]).reshape(self._lens.height, self._lens.width)
+        return self._label[bodies + 1]
 
     def close(self) -> None:
         """Gives the client back; further frames are an error."""
         self._finalize()
+
+    def _picture(self, view: Viewpoint, t: Nanos, flags: int) -> Any:  # noqa: ARG002
+        """Returns what PyBullet sees: width, height, colours, depths, bodies."""
+        client, lens, cost = self._client, self._lens, self._cost
+        for body, x, y in self._beacons:
+            half = 0.5 * atan2(view.y - y, view.x - x)
+            pybullet.resetBasePositionAndOrientation(
+                body, (x, y, 0.0), (0.0, 0.0, sin(half), cos(half)), physicsClientId=client
+            )
+        matrices = look(view), self._projection
+        with self._quiet():
+            start = perf_counter()
+            picture = pybullet.getCameraImage(
+                lens.width, lens.height, *matrices, **_LIGHT, **_TINY, flags=flags, physicsClientId=client
+            )
+            cost.render += perf_counter() - start
+        return picture
 
     def _load(self, scenery: Scenery) -> list[tuple[int, float, float]]:
         """Returns body, x and y (m) of each beacon."""
@@ -120,29 +131,8 @@ def _disconnect(client: int, quiet: Quiet) -> None:
         pybullet.disconnect(client)
 
 
-def look(x: float, y: float, z: float, yaw: float) -> tuple[float, ...]:
-    """Returns OpenGL's 4×4 view matrix, column by column: level, at x, y, z (m), along yaw (rad)."""
-    c, s = cos(yaw), sin(yaw)
-    return (
-        s, 0.0, -c, 0.0,
-        -c, 0.0, -s, 0.0,
-        0.0, 1.0, 0.0, 0.0,
-        c * y - s * x, -z, c * x + s * y, 1.0,
-    )  # fmt: skip
-
-
-def projection(lens: Lens, edges: tuple[float, float]) -> tuple[float, ...]:
-    """Returns OpenGL's 4×4 projection matrix, column by column.
-
-    edges: column of the frustum's left and row of its upper edge, in pixels of OpenCV's convention.
-    """
-    column, row = edges
-    left, right = (column - lens.cx) / lens.focal, (column + lens.width - lens.cx) / lens.focal
-    top, bottom = (lens.cy - row) / lens.focal, (lens.cy - row - lens.height) / lens.focal
-    depth = FAR - NEAR
-    return (
-        2.0 / (right - left), 0.0, 0.0, 0.0,
-        0.0, 2.0 / (top - bottom), 0.0, 0.0,
-        (right + left) / (right - left), (top + bottom) / (top - bottom), -(FAR + NEAR) / depth, -1.0,
-        0.0, 0.0, -2.0 * FAR * NEAR / depth, 0.0,
-    )  # fmt: skip
+def _labels(bodies: Sequence[int]) -> Image:
+    """Returns (n,) what each body is labelled as; the first is that of no body."""
+    labels = np.zeros(max(bodies, default=-1) + 2, np.uint8)
+    labels[[body + 1 for body in bodies]] = range(1, len(bodies) + 1)
+    return labels
