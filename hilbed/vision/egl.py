@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from os import O_WRONLY, close, devnull, dup, dup2, open
 
 from hilbed.types import ScenarioError
-from hilbed.vision.lens import Lens
+from hilbed.vision.opengl import Pinhole
 
 LARGEST_FRAME = (1024, 768)
 _PATIENCE = 60.0
@@ -28,7 +28,7 @@ def trouble() -> str:
     return "" if child.returncode == 0 else f"a trial in a child process ended with {child.returncode}"
 
 
-def require(lens: Lens) -> None:
+def require(lens: Pinhole) -> None:
     """Raises ScenarioError where EGL does not work or cannot draw as large a frame."""
     width, height = LARGEST_FRAME
     if lens.width > width or lens.height > height:

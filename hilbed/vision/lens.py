@@ -36,6 +36,14 @@ class Lens:
         return self.width / 2.0 / tan(self.fov / 2.0)
 
     @property
+    def fx(self) -> float:
+        return self.focal
+
+    @property
+    def fy(self) -> float:
+        return self.focal
+
+    @property
     def cx(self) -> float:
         return (self.width - 1) / 2.0
 
