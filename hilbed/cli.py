@@ -62,7 +62,7 @@ def _status(options: Options) -> int:
             return BUS
         except HilbedError as error:
             print(error, file=sys.stderr)
-            return BROKEN if options.command in (_run, _sweep, _paper, _bench) else REFUSED
+            return BROKEN if options.command in (_run, _sweep, _paper, _bench, _frames) else REFUSED
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -107,6 +107,13 @@ def _parser() -> argparse.ArgumentParser:
     paper.add_argument("--force", action="store_true", help="replace an existing page and its runs")
     paper.add_argument("--ideal", action="store_true", help="leave the twins on the bench out")
     paper.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
+
+    frames = _command(commands, "frames", _frames, "render frames with truth into a dataset")
+    _add_scenario(frames)
+    frames.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder of the dataset")
+    frames.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
+    frames.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
+    frames.add_argument("--force", action="store_true", help="replace another dataset")
 
     _command(commands, "list", _list, "list the bundled scenarios")
     check = _command(commands, "check", _check, "validate a scenario and print every error with its line")
@@ -173,6 +180,12 @@ def _paper(options: Options) -> int:
     from hilbed.paper.command import paper
 
     return paper(options.paper, options.out, options.jobs, options.ideal, options.force)
+
+
+def _frames(options: Options) -> int:
+    from hilbed.vision_kit.frames import frames
+
+    return frames(options)
 
 
 def _list(_: Options) -> int:

@@ -1,0 +1,137 @@
+"""A scenario's camera without its robot: labelled shots from wherever it is put."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos, sin
+from types import TracebackType
+from typing import Self
+
+from hilbed.angles import wrap
+from hilbed.clock import nanos
+from hilbed.cost import Cost
+from hilbed.plant import RecordedSpec
+from hilbed.problems import nearest
+from hilbed.scenario.load import Loaded
+from hilbed.scene import BeaconSpec
+from hilbed.sensors import CameraSpec
+from hilbed.types import ScenarioError
+from hilbed.vision.judging import VisionSpec
+from hilbed.vision.lens import Lens
+from hilbed.vision.seams import BeaconTruth, Shot, ShotTruth, Viewpoint
+from hilbed.vision.truth import sights
+from hilbed.vision_kit.labelled import LabelledShot
+from hilbed.vision_kit.poses import AlongPath, Anywhere, Poses, Stand
+
+
+class Subject:
+    """What a scenario gives to look with and at: its camera, beacons, and block `vision`.
+
+    Raises ScenarioError where it has no camera, or more than one and does not say which.
+    """
+
+    def __init__(self, loaded: Loaded) -> None:
+        self.name, self.scenario = loaded.name, loaded.scenario
+        self.vision = loaded.scenario.vision or VisionSpec()
+        self.camera_name, self.camera = _camera(loaded)
+        self.beacons = _beacons(loaded)
+
+    @property
+    def lens(self) -> Lens:
+        return self.camera.lens
+
+
+def _camera(loaded: Loaded) -> tuple[str, CameraSpec]:
+    sensors = loaded.scenario.sensors
+    cameras = {name: spec for name, spec in sensors.items() if isinstance(spec, CameraSpec)}
+    wanted = loaded.scenario.vision.camera if loaded.scenario.vision else None
+    if wanted is None and len(cameras) == 1:
+        return next(iter(cameras.items()))
+    if not cameras:
+        raise ScenarioError(f"{loaded.name}: there is no camera among its sensors")
+    if wanted is None:
+        raise ScenarioError(f"{loaded.name}: which camera? --set vision.camera={next(iter(cameras))}")
+    if wanted not in cameras:
+        raise ScenarioError(f"vision.camera: there is no camera {wanted!r}{nearest(wanted, list(cameras))}")
+    return wanted, cameras[wanted]
+
+
+def _beacons(loaded: Loaded) -> tuple[BeaconSpec, ...]:
+    plant = loaded.scenario.plant
+    if isinstance(plant, RecordedSpec):
+        raise ScenarioError(f"{loaded.name}: its robot is a recording, of which there are no frames")
+    return tuple(plant.beacons)
+
+
+def make_poses(subject: Subject) -> Poses:
+    """Returns where the frames are taken; raises ScenarioError where a path is asked for and there is none."""
+    scenario, vision = subject.scenario, subject.vision
+    kind = vision.poses or ("random" if scenario.reference is None else "path")
+    if kind == "random":
+        return Anywhere(scenario.seed, subject.beacons, subject.camera, vision.distance)
+    if scenario.reference is None:
+        raise ScenarioError("vision.poses: path needs a reference, and there is none; random needs none")
+    step = nanos(scenario.duration) // vision.frames
+    return AlongPath(scenario.reference.build(), subject.beacons, subject.camera, step)
+
+
+class Studio:
+    """Renders a subject's frames with their truth; frame k is the same whichever came before.
+
+    Raises ScenarioError where the renderer does not work. Gives the renderer back at the end of a `with`.
+    """
+
+    def __init__(self, subject: Subject) -> None:
+        from hilbed.vision.render import BulletRenderer, Scenery
+
+        camera = subject.camera
+        self._subject, self._poses = subject, make_poses(subject)
+        scenery = Scenery(subject.beacons, camera.renderer == "egl", camera.ground)
+        self._renderer = BulletRenderer(subject.lens, scenery, Cost())
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._renderer.close()
+
+    def take(self, k: int) -> LabelledShot:
+        """Returns frame k."""
+        return self.shoot(self._poses.at(k))
+
+    def shots(self, count: int, first: int = 0) -> Iterator[LabelledShot]:
+        """Yields the frames from `first` up to and without `count`."""
+        for k in range(first, count):
+            yield self.take(k)
+
+    def shoot(self, stand: Stand) -> LabelledShot:
+        """Returns the frame from a place."""
+        view = self._view(stand)
+        image = self._renderer.render(view, stand.t)
+        truth = ShotTruth(stand.t, view, stand.body, self._truth(view, stand))
+        return LabelledShot(Shot(image, stand.t, self._subject.lens), truth)
+
+    def _view(self, stand: Stand) -> Viewpoint:
+        forward, left, height = self._subject.camera.mount
+        body = stand.body
+        c, s = cos(body.yaw), sin(body.yaw)
+        x, y = body.x + c * forward - s * left, body.y + s * forward + c * left
+        return Viewpoint(x, y, height, wrap(body.yaw + stand.pan))
+
+    def _truth(self, view: Viewpoint, stand: Stand) -> tuple[BeaconTruth, ...]:
+        lens = self._subject.lens
+        found = []
+        for k, sight in enumerate(sights(self._subject.beacons, view.x, view.y, view.yaw)):
+            inside = abs(sight.azimuth) < lens.fov / 2
+            column = lens.column(sight.azimuth) if inside else float("nan")
+            half = lens.focal * sight.half_width
+            box = (int(column - half), 0, int(column + half), lens.height - 1) if inside else None
+            body = wrap(sight.azimuth + stand.pan)
+            found.append(
+                BeaconTruth(
+                    k, sight.azimuth, 0.0, body, 0.0, sight.distance, float(inside), box, column, lens.cy
+                )
+            )
+        return tuple(found)
