@@ -19,8 +19,10 @@ from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Place, Ticket
 from hilbed.sensors.faults import misses, noisy, spurious
 from hilbed.sensors.pan import make_pan
 from hilbed.sensors.pan_spec import FixedSpec, PanSpec
+from hilbed.sensors.troubles import Troubles
 from hilbed.spec import Finite, Fraction, Listed, NonNegative, Positive
 from hilbed.types import Image, Nanos, Reading, Rng, Snapshot, Truth
+from hilbed.vision.detectors import ColourSpec, DetectorSpec, make_detector, patience
 from hilbed.vision.egl import LARGEST_FRAME
 from hilbed.vision.lens import LARGEST, SMALLEST, Lens
 from hilbed.vision.seams import Detection
@@ -34,7 +36,7 @@ class CameraSpec(DeliverySpec):
 
     renderer: tiny (processor) or egl (at most 1024×768); ground: draw it, for pictures, at three times the
     cost; width, height: pixels, 16 to 4096; fov_deg: horizontal field of view, degrees, inside (0, 180);
-    mount: m, the optical centre on the pan axis in the robot's frame; identity: colour or anonymous; noise:
+    mount: m, the optical centre on the pan axis in the robot's frame; detector: a kind, or somebody's code; identity: colour or anonymous; noise:
     rad, standard deviation added to each azimuth; missed: probability for each detection; spurious: mean
     number of false azimuths a frame.
     """
@@ -47,6 +49,7 @@ class CameraSpec(DeliverySpec):
     fov_deg: Annotated[float, Field(gt=0, lt=180)] = 90.0
     mount: Listed[tuple[Finite, Finite, Positive]] = (0.0, 0.0, 0.3)
     pan: PanSpec = FixedSpec()
+    detector: DetectorSpec = ColourSpec()
     identity: Literal["colour", "anonymous"] = "colour"
     noise: Annotated[NonNegative, Field(le=pi)] = 0.0
     missed: Fraction = 0.0
@@ -95,6 +98,7 @@ class Camera:
         self._pan = make_pan(spec.pan, self._names)
         self._delivery = Delivery(spec, rng)
         self._under_way: UnderWay | None = None
+        self.troubles = Troubles(spec.detector)
 
     @property
     def due(self) -> Nanos:
@@ -126,6 +130,10 @@ class Camera:
             self._under_way = None
             self._develop(frame, glimpse)
 
+    def counts(self) -> dict[str, float]:
+        """Returns how often a foreign detector had no answer, and why."""
+        return self.troubles.counts()
+
     def close(self) -> None:
         """Gives back what the eye holds; a frame under way is lost."""
         self._under_way = None
@@ -135,6 +143,7 @@ class Camera:
         """Sends a frame's azimuths on their way, with all that goes wrong with them."""
         start = perf_counter()
         t, delivered, pan, false, _ = frame
+        self.troubles.note(t, glimpse.trouble)
         findings = self._faulty(glimpse.findings, false)
         self._pan.saw([finding.detection for finding in findings])
         readings = [azimuth(t, delivered, pan, finding.detection) for finding in findings]
@@ -185,13 +194,12 @@ def open_eye(spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, separa
     Both see the same to the bit. Raises ScenarioError where the renderer does not work.
     """
     if separate:
-        from hilbed.sensors.remote import RemoteEye
+        from hilbed.sensors.remote import PATIENCE, RemoteEye
 
-        return RemoteEye(spec, beacons, cost)
-    from hilbed.vision.detect import ColourDetector
+        return RemoteEye(spec, beacons, cost, PATIENCE + patience(spec.detector))
     from hilbed.vision.render import BulletRenderer, Scenery
 
     lens = spec.lens
     renderer = BulletRenderer(lens, Scenery(beacons, spec.renderer == "egl", spec.ground), cost)
-    detector = ColourDetector(lens, beacons, spec.identity == "anonymous")
+    detector = make_detector(spec.detector, lens, beacons, spec.identity == "anonymous")
     return LocalEye(Place(spec.mount, lens), beacons, renderer, detector, cost)

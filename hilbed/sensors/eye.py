@@ -11,7 +11,16 @@ from hilbed.scene import BeaconSpec
 from hilbed.sensors.exposure import Exposure, Moment
 from hilbed.types import Image, Pose
 from hilbed.vision.lens import Lens
-from hilbed.vision.seams import Detection, Detector, Renderer, Shot, Viewpoint
+from hilbed.vision.seams import (
+    Closing,
+    Detection,
+    DetectionFailed,
+    Detector,
+    Renderer,
+    Shot,
+    Trouble,
+    Viewpoint,
+)
 from hilbed.vision.truth import SPURIOUS, match, sights
 
 Mount = tuple[float, float, float]
@@ -33,10 +42,14 @@ class Finding(NamedTuple):
 
 
 class Glimpse(NamedTuple):
-    """One exposed frame: image (H, W, 3) RGB and what was found in it, from left to right."""
+    """One exposed frame: image (H, W, 3) RGB and what was found in it, from left to right.
+
+    trouble: why there is no answer of the detector, if there is none.
+    """
 
     image: Image
     findings: list[Finding]
+    trouble: Trouble | None = None
 
 
 Ticket: TypeAlias = Callable[[], Glimpse]
@@ -85,13 +98,22 @@ class LocalEye:
         image = self._renderer.render(view, exposure.t)
         centre = Pose(view.x, view.y, moment.pose.yaw)
         shot = Shot(image, exposure.t, self._lens)
-        glimpse = Glimpse(image, self._findings(shot, centre, moment.pan))
+        glimpse = self._judged(shot, centre, moment.pan)
         cost.vision += perf_counter() - start - (cost.render - rendered)
         return lambda: glimpse
 
     def close(self) -> None:
-        """Gives back what the renderer holds."""
+        """Gives back what renderer and detector hold."""
         self._renderer.close()
+        if isinstance(self._detector, Closing):
+            self._detector.close()
+
+    def _judged(self, shot: Shot, centre: Pose, pan: float) -> Glimpse:
+        """Returns a frame with what is found in it; without an answer of the detector, that is nothing."""
+        try:
+            return Glimpse(shot.image, self._findings(shot, centre, pan))
+        except DetectionFailed as failed:
+            return Glimpse(shot.image, [], failed.trouble)
 
     def _findings(self, shot: Shot, centre: Pose, pan: float) -> list[Finding]:
         """Returns what the detector finds, beside the truth as seen from the optical centre."""

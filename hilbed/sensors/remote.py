@@ -57,7 +57,7 @@ class RemoteEye:
         self._finalize = finalize(self, _end, self._process, self._line)
         self._image: Image = np.frombuffer(memory, np.uint8).reshape(spec.height, spec.width, 3)
         self._send((spec, self.beacons))
-        if spec.renderer == "egl":
+        if spec.renderer == "egl" or spec.detector.kind == "foreign":
             self._meet()  # one that does not work is an error of the scenario: found before it is run
 
     @property
@@ -90,8 +90,8 @@ class RemoteEye:
     def _take(self) -> Glimpse:
         self._wait()
         start = perf_counter()
-        findings, render, vision = self._receive()
-        glimpse = Glimpse(self._image.copy(), findings)
+        findings, trouble, render, vision = self._receive()
+        glimpse = Glimpse(self._image.copy(), findings, trouble)
         self._asked = False
         self.cost.render += render
         self.cost.vision += vision + perf_counter() - start

@@ -53,9 +53,9 @@ def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     for exposure in asked:
         step_aside(processors)
         render, vision = cost.render, cost.vision
-        image, findings = eye.look(exposure)()
+        image, findings, trouble = eye.look(exposure)()
         np.copyto(shared.reshape(image.shape), image)
-        yield findings, cost.render - render, cost.vision - vision
+        yield findings, trouble, cost.render - render, cost.vision - vision
 
 
 def step_aside(processors: set[int]) -> None:

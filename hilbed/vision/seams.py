@@ -39,17 +39,25 @@ class Detection(NamedTuple):
 Failure: TypeAlias = Literal["raised", "invalid", "late", "died", "skipped"]
 
 
-class DetectionFailed(HilbedError):
-    """A detector has no answer for one frame; the frame is left out and the bench goes on.
+class Trouble(NamedTuple):
+    """Why a detector has no answer for a frame.
 
     failure: raised an exception; invalid: gave back what is no list of detections; late: missed its deadline;
-    died: its process has ended; skipped: was not asked any more. said: what it has printed since its last
-    answer.
+    died: its process has ended; skipped: was not asked any more. text: where and what; said: what it has
+    printed since its last answer.
     """
 
-    def __init__(self, failure: Failure, text: str, said: str = "") -> None:
-        super().__init__(text)
-        self.failure, self.said = failure, said
+    failure: Failure
+    text: str
+    said: str = ""
+
+
+class DetectionFailed(HilbedError):
+    """A detector has no answer for one frame; the frame is left out and the bench goes on."""
+
+    def __init__(self, trouble: Trouble) -> None:
+        super().__init__(trouble.text)
+        self.trouble = trouble
 
 
 class Detector(Protocol):

@@ -1,0 +1,102 @@
+"""Detectors by their kind: those of hilbed, and foreign ones that somebody else has written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import BeforeValidator, Field
+
+from hilbed.problems import nearest, shorten
+from hilbed.scene import BeaconSpec
+from hilbed.spec import Positive, Spec
+from hilbed.vision.code import Code, parse
+from hilbed.vision.lens import Lens
+from hilbed.vision.seams import Detector
+
+
+class ColourSpec(Spec):
+    """Finds cones by their colour: the edges of each, to a fraction of a pixel."""
+
+    kind: Literal["colour"] = "colour"
+
+
+class MarkersSpec(Spec):
+    """Finds ArUco or AprilTag markers; dictionary: the markers' family, by its name in OpenCV."""
+
+    kind: Literal["markers"] = "markers"
+    dictionary: Literal["4X4_50", "5X5_50", "6X6_50", "APRILTAG_16h5", "APRILTAG_25h9", "APRILTAG_36h11"] = (
+        "4X4_50"
+    )
+
+
+def _code(value: Any) -> Any:
+    if isinstance(value, str):
+        parse(value)
+    return value
+
+
+class ForeignSpec(Spec):
+    """Somebody else's detector, in a process of its own.
+
+    code: `package.module:Class` of an installed package, `file.py` or `file.py:Class` in the scenario's
+    folder; options: what its class is made with; deadline: s for a frame; startup: s until it is made.
+    """
+
+    kind: Literal["foreign"] = "foreign"
+    code: Annotated[str, BeforeValidator(_code)]
+    deadline: Annotated[Positive, Field(le=60)] = 2.0
+    startup: Annotated[Positive, Field(le=600)] = 60.0
+    options: dict[str, Any] = {}
+
+
+KINDS: dict[str, type[Spec]] = {"colour": ColourSpec, "markers": MarkersSpec, "foreign": ForeignSpec}
+
+
+def _word(value: Any) -> Any:
+    """A word, or a kind, that is none of the known ones names code."""
+    kind = value.get("kind") if isinstance(value, dict) else value
+    if not isinstance(kind, str) or kind in KINDS:
+        return {"kind": value} if isinstance(value, str) else value
+    if not Code.named_by(kind):
+        known = nearest(kind, list(KINDS))
+        raise ValueError(f"{shorten(kind)} is neither a kind nor code (package.module:Class, file.py){known}")
+    rest = value if isinstance(value, dict) else {}
+    return {**rest, "kind": "foreign", "code": kind}
+
+
+AnyDetector: TypeAlias = ColourSpec | MarkersSpec | ForeignSpec
+DetectorSpec: TypeAlias = Annotated[AnyDetector, Field(discriminator="kind"), BeforeValidator(_word)]
+"""`detector: colour`, `detector: file.py:Class` or a block with its kind."""
+
+
+def patience(spec: AnyDetector) -> float:
+    """Returns how long (s) a detector may take for a frame before it is given up."""
+    return spec.startup + spec.deadline if isinstance(spec, ForeignSpec) else 0.0
+
+
+def make_detector(
+    spec: AnyDetector, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool = False
+) -> Detector:
+    """Returns the detector that a scenario describes; anonymous: it does not tell beacons apart.
+
+    Raises ScenarioError where foreign code cannot be used.
+    """
+    return _MAKERS[spec.kind](spec, lens, beacons, anonymous)
+
+
+def _colour(_: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) -> Detector:
+    from hilbed.vision.detect import ColourDetector
+
+    return ColourDetector(lens, beacons, anonymous)
+
+
+def _foreign(spec: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) -> Detector:
+    from hilbed.vision.foreign import ForeignDetector
+
+    return ForeignDetector(spec, lens, len(beacons), anonymous)
+
+
+_MAKERS: dict[str, Callable[[Any, Lens, Sequence[BeaconSpec], bool], Detector]] = {
+    "colour": _colour, "foreign": _foreign,
+}  # fmt: skip
