@@ -62,7 +62,7 @@ def _status(options: Options) -> int:
             return BUS
         except HilbedError as error:
             print(error, file=sys.stderr)
-            return BROKEN if options.command in (_run, _sweep, _paper, _bench, _frames) else REFUSED
+            return BROKEN if options.command in (_run, _sweep, _paper, _bench, _frames, _vision) else REFUSED
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -87,6 +87,7 @@ def _parser() -> argparse.ArgumentParser:
     run = _command(commands, "run", _run, "run a scenario and judge it")
     _add_scenario(run)
     run.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
+    _add_detector(run)
     run.add_argument("--out", type=Path, metavar="DIR", help="run folder (runs/<scenario>-<seed>)")
     run.add_argument("--force", action="store_true", help="replace an existing run folder")
     run.add_argument("--json", action="store_true", help="print verdict.json on stdout and nothing else")
@@ -114,6 +115,17 @@ def _parser() -> argparse.ArgumentParser:
     frames.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
     frames.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
     frames.add_argument("--force", action="store_true", help="replace another dataset")
+
+    vision = _command(commands, "vision", _vision, "score a detector on rendered frames, or on a dataset")
+    vision.add_argument(
+        "scenario", metavar="SCENARIO|DATASET", help="a scenario, or a folder of hilbed frames"
+    )
+    _add_settings(vision)
+    vision.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
+    vision.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
+    vision.add_argument("--out", type=Path, metavar="DIR", help="folder of page and numbers (runs/vision-…)")
+    vision.add_argument("--force", action="store_true", help="replace what an earlier command has written")
+    vision.add_argument("--json", action="store_true", help="print vision.json on stdout and nothing else")
 
     _command(commands, "list", _list, "list the bundled scenarios")
     check = _command(commands, "check", _check, "validate a scenario and print every error with its line")
@@ -157,6 +169,11 @@ def _add_settings(parser: _Parser) -> None:
     )  # fmt: skip
 
 
+def _add_detector(parser: _Parser) -> None:
+    text = "of every camera: a kind, package.module:Class, file.py or file.py:Class"
+    parser.add_argument("--detector", metavar="DETECTOR", help=text)
+
+
 def _add_bus(parser: _Parser) -> None:
     text = "of the python-can bus that carries the frames, too"
     parser.add_argument("-i", "--interface", metavar="IFACE", help=f"interface {text} (virtual, socketcan …)")
@@ -186,6 +203,12 @@ def _frames(options: Options) -> int:
     from hilbed.vision_kit.frames import frames
 
     return frames(options)
+
+
+def _vision(options: Options) -> int:
+    from hilbed.vision_kit.command import vision
+
+    return vision(options)
 
 
 def _list(_: Options) -> int:

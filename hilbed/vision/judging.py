@@ -30,10 +30,10 @@ MEASURES: dict[str, Measure] = {
     "azimuth_std_mdeg": Measure("mdeg", "standard deviation of the azimuth's error"),
     "azimuth_rms_mdeg": Measure("mdeg", "root mean square of the azimuth's error"),
     "azimuth_max_mdeg": Measure("mdeg", "largest error of an azimuth"),
-    "azimuth_bias_px": Measure("px", "mean error of the azimuth, in pixels where it was made"),
-    "azimuth_std_px": Measure("px", "standard deviation of the azimuth's error, in pixels where it was made"),
-    "normalised_std": Measure(
-        "", "spread of error over stated standard deviation: 1 where it is stated well"
+    "azimuth_bias_px": Measure("px", "mean error of the azimuth in pixels, at its beacon"),
+    "azimuth_std_px": Measure("px", "its standard deviation in pixels"),
+    "normalised_rms": Measure(
+        "", "error over stated standard deviation, rms: 1 where well stated"
     ),
     "time_p50_ms": Measure("ms", "time a frame takes, median"),
     "time_p95_ms": Measure("ms", "time a frame takes, 95 of 100 are quicker"),

@@ -1,0 +1,113 @@
+"""Reads a dataset back, and says what is wrong with one that is not whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+from hilbed import yaml12
+from hilbed.scenario.load import load
+from hilbed.types import Image, ScenarioError
+from hilbed.vision.lens import Lens
+from hilbed.vision.seams import Shot, ShotTruth
+from hilbed.vision_kit.calibration import read_calibration
+from hilbed.vision_kit.dataset import CALIBRATION, DATASET, SCENARIO, TRUTH
+from hilbed.vision_kit.labelled import LabelledShot
+from hilbed.vision_kit.studio import Subject
+from hilbed.vision_kit.truth_lines import from_line
+
+
+def is_dataset(name: str) -> bool:
+    """Tells whether a name is that of a folder, and so not a scenario's."""
+    return Path(name).is_dir()
+
+
+class Archive:
+    """The frames of a dataset folder; images are read one by one, when they are asked for.
+
+    settings, seed: as for a scenario, laid over the one that the dataset was made from. Raises ScenarioError
+    naming the file where the folder is not a whole dataset.
+    """
+
+    def __init__(self, folder: Path, settings: Sequence[str] = (), seed: int | None = None) -> None:
+        self._folder = folder
+        self.about = _about(folder / DATASET)
+        loaded = load(str(folder / SCENARIO), settings, seed)
+        self.subject = Subject(loaded._replace(name=str(self.about.get("scenario", folder.name))))
+        self._lens = read_calibration(folder / CALIBRATION, self.subject.lens)
+        self._truth = _truth(folder, int(self.about["frames"]))
+
+    def __len__(self) -> int:
+        return len(self._truth)
+
+    @property
+    def lens(self) -> Lens:
+        return self._lens
+
+    def shots(self, count: int | None = None) -> Iterator[LabelledShot]:
+        """Yields the first frames, or all; raises ScenarioError for an image that cannot be used."""
+        for file, truth in self._truth[:count]:
+            image = read_image(self._folder / file, self._lens)
+            yield LabelledShot(Shot(image, truth.t, self._lens), truth)
+
+
+def _about(path: Path) -> dict[str, Any]:
+    if not path.is_file():
+        raise ScenarioError(
+            f"{path.parent} is not a dataset: there is no {path.name}; hilbed frames writes one"
+        )
+    try:
+        about, _ = yaml12.read(path.read_text(encoding="utf-8"), str(path))
+        if not isinstance(about.get("frames"), int):
+            raise ScenarioError(f"{path}: frames is missing, or no whole number")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"{path}: cannot be read: {error}") from None
+    return about
+
+
+def _truth(folder: Path, count: int) -> list[tuple[str, ShotTruth]]:
+    path = folder / TRUTH
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"{path}: cannot be read: {error}") from None
+    if len(lines) != count:
+        raise ScenarioError(
+            f"{path}: {len(lines)} of {count} frames; the hilbed frames command that began {folder} goes on "
+            "where it stopped"
+        )
+    return [_line(path, number, line) for number, line in enumerate(lines, 1)]
+
+
+def _line(path: Path, number: int, line: str) -> tuple[str, ShotTruth]:
+    try:
+        file, truth = from_line(line)
+    except ValueError as error:
+        raise ScenarioError(f"{path}:{number}: {error}") from None
+    if not (path.parent / file).resolve().is_relative_to(path.parent.resolve()):
+        raise ScenarioError(f"{path}:{number}: {file} lies outside the dataset")
+    return file, truth
+
+
+def read_image(path: Path, lens: Lens) -> Image:
+    """Returns an image (H, W, 3) RGB of the size that the calibration says; raises ScenarioError."""
+    try:
+        data = np.frombuffer(path.read_bytes(), np.uint8)
+    except OSError as error:
+        raise ScenarioError(f"{path}: {error.strerror}") from None
+    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
+    if image is None:
+        raise ScenarioError(f"{path}: is no image, or is cut off")
+    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
+        channels = 1 if image.ndim == 2 else image.shape[2]
+        raise ScenarioError(f"{path}: has {channels} channels of {image.dtype}, a frame has 3 of uint8")
+    height, width = image.shape[:2]
+    if (width, height) != (lens.width, lens.height):
+        raise ScenarioError(
+            f"{path}: is {width}×{height}, but {CALIBRATION} is for {lens.width}×{lens.height} pixels"
+        )
+    return np.ascontiguousarray(image[:, :, ::-1])

@@ -1,0 +1,139 @@
+"""What `hilbed vision` does: a detector on labelled frames, its measures, a page and an exit status."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from math import isfinite
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from hilbed import yaml12
+from hilbed.console import end_progress, progress, quiet_pipe
+from hilbed.record.disk import RecordError
+from hilbed.record.folder import write_whole
+from hilbed.scenario.load import load, resolved
+from hilbed.types import ScenarioError
+from hilbed.versions import versions
+from hilbed.vision.seams import Detector
+from hilbed.vision_kit.archive import Archive, is_dataset
+from hilbed.vision_kit.labelled import LabelledShot
+from hilbed.vision_kit.measures import judge, measure
+from hilbed.vision_kit.studio import Studio, Subject
+from hilbed.vision_kit.trial import Rules, Trial, run_trial
+
+PAGE, VERDICT = "vision.html", "vision.json"
+
+
+class Footage(NamedTuple):
+    """Labelled frames, how many, and whose they are."""
+
+    subject: Subject
+    count: int
+    shots: Iterator[LabelledShot]
+
+
+def vision(options: Namespace) -> int:
+    """Scores a detector on a scenario or a dataset, and returns 0 where all criteria are met, else 1."""
+    with footage(options) as (subject, count, shots):
+        folder: Path = options.out or Path("runs") / f"vision-{subject.name}-{subject.scenario.seed}"
+        _admit(folder, options.force)
+        detector, name = _detector(subject, options)
+        rules = Rules(subject.vision.visible, subject.vision.distance)
+        try:
+            trial = run_trial(shots, detector, rules, lambda k: progress(f"frame {k + 1} of {count}"))
+        finally:
+            end_progress()
+    verdict = conclude(subject, trial, name)
+    _write(folder, subject, trial, verdict)
+    with quiet_pipe():
+        print(json.dumps(verdict, indent=2) if options.json else _table(verdict, folder))
+    return 0 if verdict["passed"] else 1
+
+
+@contextmanager
+def footage(options: Namespace) -> Iterator[Footage]:
+    """Yields the frames of a dataset, or those rendered of a scenario."""
+    settings = list(options.settings)
+    if is_dataset(options.scenario):
+        archive = Archive(Path(options.scenario), settings, options.seed)
+        count = min(options.count or len(archive), len(archive))
+        yield Footage(archive.subject, count, archive.shots(count))
+        return
+    if options.count is not None:
+        settings.append(f"vision.frames={options.count}")
+    subject = Subject(load(options.scenario, settings, options.seed))
+    with Studio(subject) as studio:
+        yield Footage(subject, subject.vision.frames, studio.shots(subject.vision.frames))
+
+
+def _detector(subject: Subject, options: Namespace) -> tuple[Detector, str]:
+    from hilbed.vision.detect import ColourDetector
+
+    detector = ColourDetector(subject.lens, subject.beacons, subject.camera.identity == "anonymous")
+    return detector, "colour"
+
+
+def conclude(subject: Subject, trial: Trial, detector: str) -> dict[str, Any]:
+    """Returns the content of vision.json; numbers that are not finite are None."""
+    values = measure(trial)
+    judged = judge(values, subject.vision.criteria)
+    reasons = [f"{name}: {entry['reason']}" for name, entry in judged.items() if not entry["passed"]]
+    return {
+        "scenario": subject.name,
+        "seed": subject.scenario.seed,
+        "detector": detector,
+        "passed": not reasons,
+        "reason": "; ".join(reasons),
+        "criteria": judged,
+        "measures": {name: value if isfinite(value) else None for name, value in values.items()},
+        "failed": {str(frame): why for frame, why in trial.failed.items()},
+        "worst": [picture.frame for picture in trial.worst],
+        "versions": versions(),
+    }
+
+
+def _admit(folder: Path, force: bool) -> None:
+    """Raises ScenarioError where the folder holds anything that must not be overwritten."""
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise ScenarioError(f"{folder} is not a folder; give another one with --out")
+    if any(folder.iterdir()):
+        if not (folder / VERDICT).exists():
+            raise ScenarioError(f"{folder} holds something else; give another folder with --out")
+        if not force:
+            raise ScenarioError(
+                f"{folder} exists; --force replaces what is in it, --out takes another folder"
+            )
+
+
+def _write(folder: Path, subject: Subject, trial: Trial, verdict: Mapping[str, Any]) -> None:
+    from hilbed.vision_kit.page import write
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RecordError(f"{folder}: {error.strerror}") from error
+    text = yaml12.write(resolved(subject.scenario, versions()))
+    write_whole(folder / VERDICT, (json.dumps(verdict, indent=2, allow_nan=False) + "\n").encode())
+    write_whole(folder / PAGE, write(subject, trial, verdict, text).encode())
+
+
+def _table(verdict: Mapping[str, Any], folder: Path) -> str:
+    from hilbed.vision.judging import MEASURES
+
+    lines = []
+    for name, value in verdict["measures"].items():
+        shown = "none" if value is None else f"{value:.4g}"
+        lines.append(f"{name:18} {shown:>10} {MEASURES[name].unit}".rstrip())
+    for name, entry in verdict["criteria"].items():
+        sign = "≤" if entry["bound"] == "max" else "≥"
+        shown = "none" if entry["value"] is None else f"{entry['value']:.4g}"
+        lines.append(f"{name}  {shown}  {sign} {entry['limit']:.4g}  {'pass' if entry['passed'] else 'FAIL'}")
+    word = "passed" if verdict["passed"] else "FAILED"
+    return "\n".join(
+        [*lines, f"{verdict['scenario']}, {verdict['detector']}: {word}", f"page: {folder / PAGE}"]
+    )
