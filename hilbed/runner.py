@@ -29,6 +29,8 @@ from hilbed.record.row import Sink
 from hilbed.scenario.load import Loaded, resolved
 from hilbed.scenario.model import Scenario
 from hilbed.scenario.own_files import pack
+from hilbed.sensors.camera import Camera
+from hilbed.sensors.troubles import Troubles
 from hilbed.tally import counts_of
 from hilbed.types import BusError, Cycle, Diverged, HilbedError, Interrupted, Nanos
 from hilbed.versions import versions
@@ -139,7 +141,7 @@ def perform(
         hash=run_hash(signals, bus.digest()),
         signals_hash=signals_hash(signals),
         events=bench.events(),
-        parts=_parts(bench, pacer),
+        parts=_parts(bench, pacer, _foreign(bench, loaded.scenario)),
     )
     content = verdict.conclude(account, signals, loaded.scenario.criteria)
     if folder is not None:
@@ -152,10 +154,27 @@ def _pacer(scenario: Scenario, cost: Cost) -> Pacer | None:
     return None if spec is None else Pacer(spec, nanos(scenario.period), cost)
 
 
-def _parts(bench: Bench, pacer: Pacer | None) -> dict[str, Any]:
-    """Returns what verdict.json says of counters, of a run in real time, of a bus that others are on."""
+def _foreign(bench: Bench, scenario: Scenario) -> dict[str, Troubles]:
+    """Returns what foreign detectors did wrong, by the camera's name."""
+    cameras = zip(scenario.sensors, bench.rig.sensors, strict=False)  # a recorded robot's are not by name
+    return {
+        name: sensor.troubles
+        for name, sensor in cameras
+        if isinstance(sensor, Camera) and sensor.troubles.foreign
+    }
+
+
+def _parts(bench: Bench, pacer: Pacer | None, foreign: Mapping[str, Troubles]) -> dict[str, Any]:
+    """Returns what verdict.json says of counters, detectors, a run in real time, a bus that others are on."""
     counted = {"estimator": counts_of(bench.rig.estimator), "controller": counts_of(bench.rig.controller)}
-    parts = {"counts": {name: _numbers(counts) for name, counts in counted.items()}, **bench.account()}
+    counted |= {f"sensors.{name}": troubles.counts() for name, troubles in foreign.items()}
+    parts = {
+        "counts": {name: _numbers(counts) for name, counts in counted.items()},
+        "reproducible": pacer is None and all(troubles.reproducible for troubles in foreign.values()),
+        **bench.account(),
+    }
+    if foreign:
+        parts["detectors"] = {name: troubles.lines() for name, troubles in foreign.items()}
     if pacer is not None:
         parts["realtime"] = pacer.ledger.summary(pacer.period, bench.late())
     return parts

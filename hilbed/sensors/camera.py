@@ -64,7 +64,7 @@ class CameraSpec(DeliverySpec):
 
     @property
     def lens(self) -> Lens:
-        return Lens(self.width, self.height, radians(self.fov_deg))
+        return Lens.of_fov(self.width, self.height, radians(self.fov_deg))
 
     def kinds(self) -> dict[str, int]:
         """Returns what it measures, with the number of components."""
@@ -129,10 +129,6 @@ class Camera:
             frame, glimpse = self._under_way, self._under_way.ticket()
             self._under_way = None
             self._develop(frame, glimpse)
-
-    def counts(self) -> dict[str, float]:
-        """Returns how often a foreign detector had no answer, and why."""
-        return self.troubles.counts()
 
     def close(self) -> None:
         """Gives back what the eye holds; a frame under way is lost."""

@@ -11,10 +11,10 @@ from hilbed.vision.seams import Failure, Trouble
 
 
 class Troubles:
-    """The frames of a camera whose detector is foreign, and those without an answer; else nothing."""
+    """The frames of a camera and those without an answer; foreign: whether there can be any such."""
 
     def __init__(self, detector: AnyDetector) -> None:
-        self._foreign = isinstance(detector, ForeignSpec)
+        self.foreign = isinstance(detector, ForeignSpec)
         self._frames = 0
         self._counts: dict[str, int] = dict.fromkeys(get_args(Failure), 0)
         self._first: dict[str, tuple[Nanos, Trouble]] = {}
@@ -28,7 +28,7 @@ class Troubles:
 
     def counts(self) -> dict[str, float]:
         """Returns frames asked for, and those without an answer by their failure."""
-        return {"frames": self._frames, **self._counts} if self._foreign else {}
+        return {"frames": self._frames, **self._counts}
 
     @property
     def reproducible(self) -> bool:

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-_MODULE = "package.module:Class"
+from hilbed.problems import shorten
+
+_GIVE = ": give package.module:Class, file.py or file.py:Class"
 
 
 class Code(NamedTuple):
@@ -34,10 +36,12 @@ def parse(text: str) -> Code:
     if not colon:
         place, name = text, ""
     code = Code(place, name)
-    if (colon or not code.is_file) and not name.isidentifier():
-        raise ValueError(f"{text!r} does not name a class: give {_MODULE}, file.py or file.py:Class")
+    if not Code.named_by(text):
+        raise ValueError(f"{shorten(text)} is neither a kind of detector nor code{_GIVE}")
+    if colon and not name.isidentifier():
+        raise ValueError(f"{shorten(text)} does not name a class{_GIVE}")
     if not code.is_file and not all(step.isidentifier() for step in place.split(".")):
-        raise ValueError(f"{text!r} does not name a module: give {_MODULE}, file.py or file.py:Class")
+        raise ValueError(f"{shorten(text)} does not name a module{_GIVE}")
     return code
 
 

@@ -16,8 +16,8 @@ from hilbed.vision.lens import Lens
 from hilbed.vision.returned import checked
 from hilbed.vision.seams import Detection, DetectionFailed, Failure, Shot, Trouble
 
-RESTARTS = 3
-"""So many times in succession, without an answer in between, it is started again."""
+RESTARTS, MOST_RESTARTS = 3, 20
+"""So many times in succession, without an answer in between, and in all, it is started again."""
 
 _TOLD = 2000  # characters of what it printed, in a message
 _PLACE = re.compile(r'^  File "(?P<file>[^"]+)", line (?P<line>\d+) in (?P<function>\S+)', re.MULTILINE)
@@ -33,7 +33,7 @@ class ForeignDetector:
 
     def __init__(self, spec: ForeignSpec, lens: Lens, beacons: int, anonymous: bool = False) -> None:
         self._spec, self._lens, self._beacons, self._anonymous = spec, lens, beacons, anonymous
-        self._left = RESTARTS
+        self._left, self._left_in_all = RESTARTS, MOST_RESTARTS
         self._child: Child | None = self._start()
 
     @property
@@ -82,9 +82,10 @@ class ForeignDetector:
         raise ScenarioError(f"detector {spec.code}: {text}{_quoted(said)}")
 
     def _again(self) -> Child:
-        if not self._left:
-            raise failed("skipped", f"not asked any more: lost {RESTARTS + 1} times in succession")
+        if not (self._left and self._left_in_all):
+            raise failed("skipped", "not asked any more: it was started again often enough")
         self._left -= 1
+        self._left_in_all -= 1
         try:
             return self._start()
         except ScenarioError as error:
