@@ -71,7 +71,7 @@ def main() -> None:
     parser.add_argument("frames", type=int, nargs="?", default=400)
     given = parser.parse_args()
     try:
-        lens = Lens(given.width, given.height, radians(given.fov_deg))
+        lens = Lens.of_fov(given.width, given.height, radians(given.fov_deg))
     except ScenarioError as error:
         parser.error(str(error))
     rows, render, detect = measure(lens, max(given.frames, FRAMES_A_SCENE))

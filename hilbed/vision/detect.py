@@ -41,11 +41,11 @@ class ColourDetector:
             for colour in self._palette.colours
         ]
         edges = np.arange(lens.width - 1) + 0.5
-        self._angle = np.arctan((lens.cx - edges) / lens.focal)
+        self._angle = np.arctan((lens.cx - edges) / lens.fx)
         self._cos = np.cos(self._angle)
-        self._drop = (np.arange(lens.height) - lens.cy) / lens.focal
+        self._drop = (np.arange(lens.height) - lens.cy) / lens.fx
         self._slope = np.abs(self._drop)
-        self._focal = lens.focal
+        self._focal = lens.fx
 
     def detect(self, shot: Shot) -> list[Detection]:
         """Returns what is seen, from left to right."""

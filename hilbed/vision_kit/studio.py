@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, sin
 from types import TracebackType
 from typing import Self
 
@@ -15,13 +14,15 @@ from hilbed.problems import nearest
 from hilbed.scenario.load import Loaded
 from hilbed.scene import BeaconSpec
 from hilbed.sensors import CameraSpec
+from hilbed.sensors.exposure import Exposure, Moment
+from hilbed.sensors.eye import viewpoint
 from hilbed.types import ScenarioError
 from hilbed.vision.judging import VisionSpec
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import BeaconTruth, Shot, ShotTruth, Viewpoint
 from hilbed.vision.truth import sights
 from hilbed.vision_kit.labelled import LabelledShot
-from hilbed.vision_kit.poses import AlongPath, Anywhere, Poses, Stand
+from hilbed.vision_kit.poses import AlongPath, Anywhere, Poses
 
 
 class Subject:
@@ -106,29 +107,23 @@ class Studio:
         for k in range(first, count):
             yield self.take(k)
 
-    def shoot(self, stand: Stand) -> LabelledShot:
-        """Returns the frame from a place."""
-        view = self._view(stand)
-        image = self._renderer.render(view, stand.t)
-        truth = ShotTruth(stand.t, view, stand.body, self._truth(view, stand))
-        return LabelledShot(Shot(image, stand.t, self._subject.lens), truth)
+    def shoot(self, exposure: Exposure) -> LabelledShot:
+        """Returns the frame from wherever the camera is put."""
+        moment = exposure.at(exposure.t)
+        view = viewpoint(self._subject.camera.mount, moment)
+        image = self._renderer.render(view, exposure.t)
+        truth = ShotTruth(exposure.t, view, moment.pose, self._truth(view, moment))
+        return LabelledShot(Shot(image, exposure.t, self._subject.lens), truth)
 
-    def _view(self, stand: Stand) -> Viewpoint:
-        forward, left, height = self._subject.camera.mount
-        body = stand.body
-        c, s = cos(body.yaw), sin(body.yaw)
-        x, y = body.x + c * forward - s * left, body.y + s * forward + c * left
-        return Viewpoint(x, y, height, wrap(body.yaw + stand.pan))
-
-    def _truth(self, view: Viewpoint, stand: Stand) -> tuple[BeaconTruth, ...]:
+    def _truth(self, view: Viewpoint, moment: Moment) -> tuple[BeaconTruth, ...]:
         lens = self._subject.lens
         found = []
         for k, sight in enumerate(sights(self._subject.beacons, view.x, view.y, view.yaw)):
             inside = abs(sight.azimuth) < lens.fov / 2
             column = lens.column(sight.azimuth) if inside else float("nan")
-            half = lens.focal * sight.half_width
+            half = lens.fx * sight.half_width
             box = (int(column - half), 0, int(column + half), lens.height - 1) if inside else None
-            body = wrap(sight.azimuth + stand.pan)
+            body = wrap(sight.azimuth + moment.pan)
             found.append(
                 BeaconTruth(
                     k, sight.azimuth, 0.0, body, 0.0, sight.distance, float(inside), box, column, lens.cy

@@ -14,7 +14,7 @@ from hilbed.vision.lens import Lens
 from hilbed.vision.render import BulletRenderer, Scenery
 from hilbed.vision.seams import Shot, Viewpoint
 
-WIDE = Lens(640, 64, pi / 2)
+WIDE = Lens.of_fov(640, 64, pi / 2)
 AHEAD = Viewpoint(0.0, 0.0, 0.3, 0.0)
 COLOURS = ("red", "orange", "green", "azure", "magenta", "yellow")
 

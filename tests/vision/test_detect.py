@@ -18,7 +18,7 @@ from tests.vision.scenes import AHEAD, COLOURS, WIDE, axis, beacon, project, ren
 def true_azimuth(spec: BeaconSpec, lens: Lens, eye: tuple[float, float, float], yaw: float) -> float:
     pixels = project(axis(spec), lens, eye, yaw)
     assert pixels[0, 0] == pytest.approx(pixels[1, 0], abs=1e-9)
-    return atan((lens.cx - pixels[0, 0]) / lens.focal)
+    return atan((lens.cx - pixels[0, 0]) / lens.fx)
 
 
 def seen(beacons: list[BeaconSpec], yaw: float = 0.0, anonymous: bool = False) -> list[Detection]:
@@ -61,7 +61,7 @@ def test_azimuths_from_2_to_8_m_are_exact_and_say_how_exact() -> None:
 
 def test_no_bias_where_left_and_right_edge_differ_in_depression() -> None:
     """Beacons near the border of a tall image, well below the camera: a plain mean is 57 mdeg off."""
-    lens, eye = Lens(640, 480, pi / 2), (0.0, 0.0, 1.0)
+    lens, eye = Lens.of_fov(640, 480, pi / 2), (0.0, 0.0, 1.0)
     millidegrees = []
     for azimuth in np.linspace(0.45, 0.7, 60):
         spec = beacon(float(azimuth), 1.0)
@@ -125,7 +125,7 @@ def test_one_beacon_passing_before_another_gives_no_wrong_azimuth(
         counts.add(len(detections))
         for detection in detections:
             error = min(abs(detection.azimuth), abs(detection.azimuth - offset))
-            assert error <= pixels / WIDE.focal, (offset, detection)
+            assert error <= pixels / WIDE.fx, (offset, detection)
     assert 2 in counts
 
 
@@ -142,7 +142,7 @@ def test_a_beacon_leaving_the_image_is_never_measured_wrongly() -> None:
         detections = seen([spec], yaw=float(yaw))
         outcomes.add(len(detections))
         for detection in detections:
-            assert detection.azimuth == pytest.approx(-yaw, abs=0.25 / WIDE.focal)
+            assert detection.azimuth == pytest.approx(-yaw, abs=0.25 / WIDE.fx)
     assert outcomes == {0, 1}
 
 

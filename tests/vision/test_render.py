@@ -43,14 +43,14 @@ def assert_pixels_match(lens: Lens, with_egl: bool) -> None:
                 assert red[row, column] == (depth > 0), (row, column, depth)
 
 
-@pytest.mark.parametrize("lens", [Lens(320, 48, pi / 2), Lens(161, 121, 1.5)])
+@pytest.mark.parametrize("lens", [Lens.of_fov(320, 48, pi / 2), Lens.of_fov(161, 121, 1.5)])
 def test_tiny_colours_exactly_the_pixels_whose_centre_is_inside(lens: Lens) -> None:
     assert_pixels_match(lens, with_egl=False)
 
 
 @pytest.mark.usefixtures("working_egl")
 def test_egl_colours_exactly_the_pixels_whose_centre_is_inside() -> None:
-    assert_pixels_match(Lens(320, 48, pi / 2), with_egl=True)
+    assert_pixels_match(Lens.of_fov(320, 48, pi / 2), with_egl=True)
 
 
 @pytest.mark.usefixtures("working_egl")
@@ -85,7 +85,7 @@ def test_egl_writes_nothing_on_standard_output(capfd: pytest.CaptureFixture[str]
 @pytest.mark.usefixtures("working_egl")
 def test_egl_refuses_a_frame_that_it_would_stretch() -> None:
     with pytest.raises(ScenarioError, match="1024×768"):
-        renderer([], Lens(1280, 64, 1.0), egl=True)
+        renderer([], Lens.of_fov(1280, 64, 1.0), egl=True)
 
 
 def test_egl_that_does_not_work_is_told_and_not_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -132,7 +132,7 @@ def test_a_beacon_behind_the_camera_is_not_drawn() -> None:
 
 @pytest.mark.parametrize("size", [(16, 16), (4096, 16), (17, 33)])
 def test_any_size(size: tuple[int, int]) -> None:
-    lens = Lens(*size, 1.0)
+    lens = Lens.of_fov(*size, 1.0)
     assert renderer([beacon(0.0, 2.0)], lens).render(AHEAD, 0).shape == (lens.height, lens.width, 3)
 
 
