@@ -65,13 +65,13 @@ def _plain(name: str, value: Any) -> float | int | None:
 
 
 def checked(rows: Sequence[Row], lens: Lens, beacons: int) -> list[Detection]:
-    """Returns rows as detections, from left to right; beacons: how many there are.
+    """Returns rows of `plain` as detections, from left to right; beacons: how many there are.
 
     Raises ValueError where one is not finite, has no positive standard deviation, lies out of the image or
     names a beacon that is not there.
     """
     found = [_detection(row) for row in rows]
-    right, left = lens.azimuth(lens.width - 1 + _EDGE), lens.azimuth(-_EDGE)
+    right, left = lens.span
     for one in found:
         if not (isfinite(one.azimuth) and isfinite(one.std) and isfinite(one.column)):
             raise ValueError(f"not finite: {_told(one)}")

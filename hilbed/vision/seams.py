@@ -59,6 +59,10 @@ class DetectionFailed(HilbedError):
         super().__init__(trouble.text)
         self.trouble = trouble
 
+    @property
+    def failure(self) -> Failure:
+        return self.trouble.failure
+
 
 class Detector(Protocol):
     """Finds beacons in an image and knows nothing else."""
