@@ -54,7 +54,8 @@ class RemoteEye:
         self._socket.settimeout(patience)
         self._line = self._socket.makefile("rwb")
         self._socket.close()  # in name: it stays open as long as the file
-        self._finalize = finalize(self, _end, self._process, self._line)
+        grace = _LAST_WORDS if spec.detector.kind == "foreign" else 0.0
+        self._finalize = finalize(self, _end, self._process, self._line, grace)
         self._image: Image = np.frombuffer(memory, np.uint8).reshape(spec.height, spec.width, 3)
         self._send((spec, self.beacons))
         if spec.renderer == "egl" or spec.detector.kind == "foreign":
@@ -165,8 +166,16 @@ def _start(size: int) -> tuple[Popen[bytes], socket.socket, mmap]:
         os.close(memory)
 
 
-def _end(child: Popen[bytes], line: BufferedRWPair) -> None:
-    """Ends a child in whatever state it is; it holds nothing that needs to be put in order."""
+def _end(child: Popen[bytes], line: BufferedRWPair, grace: float) -> None:
+    """Ends a child in whatever state it is.
+
+    grace: s that it has to end a child of its own, a foreign detector; else there is nothing to be put in
+    order.
+    """
+    if grace:
+        child.terminate()
+        with suppress(TimeoutExpired):
+            child.wait(grace)
     child.kill()
     child.wait()
     with suppress(OSError):  # a request that was never sent

@@ -99,8 +99,8 @@ class ForeignDetector:
             where = _where(child.traceback())
             failure = failed("late", f"missed its deadline of {deadline:g} s{where}", child.said())
         except ChildLost as error:
-            said = child.said()
-            failure = failed("died", f"{error}{_where(said)}", said)
+            said, _, fatal = child.said().partition("Fatal Python error")
+            failure = failed("died", f"{error}{_where(fatal)}", said)
         self._end()
         raise failure
 
