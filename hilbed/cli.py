@@ -121,6 +121,7 @@ def _parser() -> argparse.ArgumentParser:
         "scenario", metavar="SCENARIO|DATASET", help="a scenario, or a folder of hilbed frames"
     )
     _add_settings(vision)
+    _add_detector(vision)
     vision.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
     vision.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
     vision.add_argument("--out", type=Path, metavar="DIR", help="folder of page and numbers (runs/vision-…)")

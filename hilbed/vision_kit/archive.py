@@ -14,7 +14,7 @@ from hilbed.scenario.load import load
 from hilbed.types import Image, ScenarioError
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import Shot, ShotTruth
-from hilbed.vision_kit.calibration import read_calibration
+from hilbed.vision_kit.calibration import read_calibration, same
 from hilbed.vision_kit.dataset import CALIBRATION, DATASET, SCENARIO, TRUTH
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.studio import Subject
@@ -29,16 +29,20 @@ def is_dataset(name: str) -> bool:
 class Archive:
     """The frames of a dataset folder; images are read one by one, when they are asked for.
 
-    settings, seed: as for a scenario, laid over the one that the dataset was made from. Raises ScenarioError
-    naming the file where the folder is not a whole dataset.
+    settings, seed, detector: as for a scenario, laid over the one that the dataset was made from. Raises
+    ScenarioError naming the file where the folder is not a whole dataset.
     """
 
-    def __init__(self, folder: Path, settings: Sequence[str] = (), seed: int | None = None) -> None:
+    def __init__(
+        self, folder: Path, settings: Sequence[str] = (), seed: int | None = None, detector: str | None = None
+    ) -> None:
         self._folder = folder
         self.about = _about(folder / DATASET)
-        loaded = load(str(folder / SCENARIO), settings, seed)
+        loaded = load(str(folder / SCENARIO), settings, seed, detector)
         self.subject = Subject(loaded._replace(name=str(self.about.get("scenario", folder.name))))
-        self._lens = read_calibration(folder / CALIBRATION, self.subject.lens)
+        self._lens = read_calibration(folder / CALIBRATION)
+        if not same(self._lens, self.subject.lens):
+            raise ScenarioError(f"{folder / CALIBRATION}: is not of the camera in {SCENARIO} beside it")
         self._truth = _truth(folder, int(self.about["frames"]))
 
     def __len__(self) -> int:

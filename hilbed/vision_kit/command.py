@@ -17,7 +17,8 @@ from hilbed.record.folder import write_whole
 from hilbed.scenario.load import load, resolved
 from hilbed.types import ScenarioError
 from hilbed.versions import versions
-from hilbed.vision.seams import Detector
+from hilbed.vision.detectors import ForeignSpec, make_detector
+from hilbed.vision.seams import Closing, Detector
 from hilbed.vision_kit.archive import Archive, is_dataset
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.measures import judge, measure
@@ -31,22 +32,22 @@ class Footage(NamedTuple):
     """Labelled frames, how many, and whose they are."""
 
     subject: Subject
-    count: int
+    total: int
     shots: Iterator[LabelledShot]
 
 
 def vision(options: Namespace) -> int:
     """Scores a detector on a scenario or a dataset, and returns 0 where all criteria are met, else 1."""
-    with footage(options) as (subject, count, shots):
+    with footage(options) as (subject, total, shots):
         folder: Path = options.out or Path("runs") / f"vision-{subject.name}-{subject.scenario.seed}"
         _admit(folder, options.force)
-        detector, name = _detector(subject, options)
         rules = Rules(subject.vision.visible, subject.vision.distance)
-        try:
-            trial = run_trial(shots, detector, rules, lambda k: progress(f"frame {k + 1} of {count}"))
-        finally:
-            end_progress()
-    verdict = conclude(subject, trial, name)
+        with opened_detector(subject) as detector:
+            try:
+                trial = run_trial(shots, detector, rules, lambda k: progress(f"frame {k + 1} of {total}"))
+            finally:
+                end_progress()
+    verdict = conclude(subject, trial)
     _write(folder, subject, trial, verdict)
     with quiet_pipe():
         print(json.dumps(verdict, indent=2) if options.json else _table(verdict, folder))
@@ -58,25 +59,37 @@ def footage(options: Namespace) -> Iterator[Footage]:
     """Yields the frames of a dataset, or those rendered of a scenario."""
     settings = list(options.settings)
     if is_dataset(options.scenario):
-        archive = Archive(Path(options.scenario), settings, options.seed)
-        count = min(options.count or len(archive), len(archive))
-        yield Footage(archive.subject, count, archive.shots(count))
+        archive = Archive(Path(options.scenario), settings, options.seed, options.detector)
+        total = min(options.count or len(archive), len(archive))
+        yield Footage(archive.subject, total, archive.shots(total))
         return
     if options.count is not None:
         settings.append(f"vision.frames={options.count}")
-    subject = Subject(load(options.scenario, settings, options.seed))
+    subject = Subject(load(options.scenario, settings, options.seed, options.detector))
     with Studio(subject) as studio:
         yield Footage(subject, subject.vision.frames, studio.shots(subject.vision.frames))
 
 
-def _detector(subject: Subject, options: Namespace) -> tuple[Detector, str]:
-    from hilbed.vision.detect import ColourDetector
+@contextmanager
+def opened_detector(subject: Subject) -> Iterator[Detector]:
+    """Yields the detector of a camera, and closes it where it holds anything."""
+    camera = subject.camera
+    anonymous = camera.identity == "anonymous"
+    detector = make_detector(camera.detector, subject.lens, subject.beacons, anonymous)
+    try:
+        yield detector
+    finally:
+        if isinstance(detector, Closing):
+            detector.close()
 
-    detector = ColourDetector(subject.lens, subject.beacons, subject.camera.identity == "anonymous")
-    return detector, "colour"
+
+def _name(subject: Subject) -> str:
+    """Returns what a detector is called: its kind, or its code without the way to it."""
+    spec = subject.camera.detector
+    return Path(spec.code).name if isinstance(spec, ForeignSpec) else spec.kind
 
 
-def conclude(subject: Subject, trial: Trial, detector: str) -> dict[str, Any]:
+def conclude(subject: Subject, trial: Trial) -> dict[str, Any]:
     """Returns the content of vision.json; numbers that are not finite are None."""
     values = measure(trial)
     judged = judge(values, subject.vision.criteria)
@@ -84,7 +97,7 @@ def conclude(subject: Subject, trial: Trial, detector: str) -> dict[str, Any]:
     return {
         "scenario": subject.name,
         "seed": subject.scenario.seed,
-        "detector": detector,
+        "detector": _name(subject),
         "passed": not reasons,
         "reason": "; ".join(reasons),
         "criteria": judged,

@@ -36,7 +36,7 @@ class Plan(NamedTuple):
     """A dataset to be written: whose frames, how many, and the files that say so."""
 
     subject: Subject
-    count: int
+    total: int
     heads: Mapping[str, bytes]
 
 
@@ -71,7 +71,7 @@ def write_dataset(plan: Plan, folder: Path, force: bool, tell: Callable[[int], N
         try:
             there = _start(plan, folder)
             with (folder / TRUTH).open("a", encoding="utf-8") as lines:
-                for k, taken in enumerate(studio.shots(plan.count, there), there):
+                for k, taken in enumerate(studio.shots(plan.total, there), there):
                     lines.write(_keep(folder, k, taken))
                     lines.flush()
                     tell(k)
@@ -121,10 +121,10 @@ def _remove(path: Path) -> None:
 def _start(plan: Plan, folder: Path) -> int:
     """Writes what the frames do not change, dataset.yaml last, and returns how many frames are whole."""
     (folder / FRAMES).mkdir(parents=True, exist_ok=True)
-    for name in reversed(plan.heads):
+    for name in reversed(list(plan.heads)):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         write_whole(folder / name, plan.heads[name])
-    lines = _whole_lines(folder, plan.count)
+    lines = _whole_lines(folder, plan.total)
     write_whole(folder / TRUTH, "".join(lines).encode())
     return len(lines)
 

@@ -49,7 +49,7 @@ def rates(trial: Trial, axis: Axis) -> str | None:
     bins = _Bins([axis.value(one) for one in trial.sightings])
     due = [one for one in trial.sightings if axis.counts(trial, one)]
     right = [one for one in trial.sightings if one.found and not one.mistaken]
-    made = [*(one for one in trial.sightings if one.found), *trial.strays]
+    made: list[Sighting | Stray] = [*(one for one in trial.sightings if one.found), *trial.strays]
     figure, (axes,) = style.sheet(1, 2.5)
     count = bins.count(due, axis)
     _columns(axes, bins, count)
@@ -77,13 +77,13 @@ class _Bins:
         self.middles = 0.5 * (self.edges[1:] + self.edges[:-1])
         self.width = float(self.edges[1] - self.edges[0])
 
-    def count(self, ones: Sequence[Sighting | Stray], axis: Axis) -> Array:
+    def count(self, ones: Sequence[Sighting] | Sequence[Sighting | Stray], axis: Axis) -> Array:
         values = [axis.value(one) for one in ones]
         return np.histogram([v for v in values if isfinite(v)], self.edges)[0].astype(float)
 
     @staticmethod
     def share(part: Array, whole: Array) -> Array:
-        return np.divide(part, whole, out=np.full(len(whole), np.nan), where=whole > 0)
+        return np.asarray(np.divide(part, whole, out=np.full(len(whole), np.nan), where=whole > 0))
 
 
 def _columns(axes: Axes, bins: _Bins, count: Array) -> None:
@@ -164,7 +164,7 @@ def times(trial: Trial) -> str | None:
     for part, dash in ((50, (0, ())), (95, (0, (4, 2))), (99, (0, (1, 2)))):
         value = float(np.percentile(ms, part))
         label = f"{part} %: {value:.3g} ms"
-        axes.axvline(value, color=_COLOUR["ink"], linewidth=1.0, linestyle=dash, label=label)  # type: ignore[arg-type]
+        axes.axvline(value, color=_COLOUR["ink"], linewidth=1.0, linestyle=dash, label=label)
     axes.set_xlim(0, last)
     axes.set_ylabel("frames")
     axes.set_xlabel("time of a frame  [ms]")

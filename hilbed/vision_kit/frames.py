@@ -24,11 +24,11 @@ def frames(options: Namespace) -> int:
     folder: Path = options.out
     try:
         there = write_dataset(
-            planned, folder, options.force, lambda k: progress(f"frame {k + 1} of {planned.count}")
+            planned, folder, options.force, lambda k: progress(f"frame {k + 1} of {planned.total}")
         )
     finally:
         end_progress()
     if there:
-        print(f"{there} of {planned.count} frames were there already", file=sys.stderr)
+        print(f"{there} of {planned.total} frames were there already", file=sys.stderr)
     print(f"dataset: {folder}")
     return 0

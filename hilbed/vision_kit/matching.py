@@ -14,6 +14,9 @@ REACH = 3.0
 """Pixels by which a detection may lie outside of the beacon that it shows."""
 
 
+STEP = 1e-6  # rad
+
+
 class Sighting(NamedTuple):
     """A beacon of which a frame shows something, and what was found of it.
 
@@ -83,11 +86,10 @@ def _blank(frame: tuple[int, float], beacon: BeaconTruth, lens: Lens) -> Sightin
 
 
 def pixels(lens: Lens, beacon: BeaconTruth, error: float) -> float:
-    """Returns by how many columns an azimuth is off, at its beacon, for an error in rad."""
-    limit = 0.5 * lens.fov
-    azimuth = max(-limit, min(limit, beacon.azimuth))
-    step = 1e-6
-    return error * (lens.column(azimuth - step) - lens.column(azimuth + step)) / (2 * step)
+    """Returns by how many columns an azimuth is off, at its beacon, for an error (rad)."""
+    right, _ = lens.pixel(beacon.azimuth - STEP, beacon.elevation)
+    left, _ = lens.pixel(beacon.azimuth + STEP, beacon.elevation)
+    return error * float(right - left) / (2 * STEP)
 
 
 def _gate(beacon: BeaconTruth) -> float:

@@ -77,7 +77,7 @@ def _at(one: Sighting) -> str:
 def drawn(image: Image, lens: Lens, beacons: Sequence[BeaconTruth], found: Sequence[Detection]) -> Image:
     """Returns an image four times as large, with what is true (green) and what was found (red)."""
     scale = 4 if lens.width <= 1024 else 1
-    large = np.ascontiguousarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_NEAREST))
+    large = np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_NEAREST), np.uint8)
     height = large.shape[0]
     for beacon in beacons:
         if beacon.box is not None and isfinite(beacon.column):

@@ -4,31 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2, cos, hypot, pi, sin
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from hilbed import rng
 from hilbed.angles import wrap
-from hilbed.clock import nanos
-from hilbed.control.reference import PathReference
+from hilbed.clock import nanos, seconds
+from hilbed.ports import Reference
+from hilbed.poses import moved
 from hilbed.scene import BeaconSpec
 from hilbed.sensors import CameraSpec
+from hilbed.sensors.exposure import Exposure, Moment
 from hilbed.sensors.pan import make_pan
 from hilbed.types import Nanos, Pose, Rng
 
 CLEARANCE = 0.3  # m from any beacon's axis: the camera is never inside one
 TRIES = 100
-
-
-class Stand(NamedTuple):
-    """One frame's time, robot's pose and pan angle (rad, robot's frame)."""
-
-    t: Nanos
-    body: Pose
-    pan: float
+SPEEDS, YAW_RATES = (0.0, 0.5), (-0.5, 0.5)  # m/s, rad/s
+AROUND: tuple[Nanos, ...] = tuple(range(-100_000_000, 100_000_001, 20_000_000))
+"""Moments before and after a frame's time that are told of its exposure."""
 
 
 class Poses(Protocol):
-    def at(self, k: int) -> Stand:
+    def at(self, k: int) -> Exposure:
         """Returns where frame k is taken, the same in whatever order they are asked for."""
         ...
 
@@ -37,15 +34,19 @@ class AlongPath:
     """On the reference, `step` apart in time; an axis that tracks a beacon looks right at it."""
 
     def __init__(
-        self, reference: PathReference, beacons: Sequence[BeaconSpec], camera: CameraSpec, step: Nanos
+        self, reference: Reference, beacons: Sequence[BeaconSpec], camera: CameraSpec, step: Nanos
     ) -> None:
         self._reference, self._beacons = reference, beacons
         self._pan, self._step = camera.pan, step
 
-    def at(self, k: int) -> Stand:
-        t = k * self._step
+    def at(self, k: int) -> Exposure:
+        t = k * self._step + self._step // 2
+        around = (max(t + dt, 0) for dt in AROUND)
+        return Exposure(t, tuple(self._moment(one) for one in around))
+
+    def _moment(self, t: Nanos) -> Moment:
         pose = self._reference.at(t).pose
-        return Stand(t, pose, self._angle(t, pose))
+        return Moment(t, pose, self._angle(t, pose))
 
     def _angle(self, t: Nanos, pose: Pose) -> float:
         if self._pan.kind != "tracking":
@@ -60,7 +61,8 @@ class AlongPath:
 class Anywhere:
     """Each frame sees one beacon, drawn by lot, from a distance and under an azimuth drawn by lot.
 
-    distance: m, from and to. Without a beacon the robot stands at the origin and looks anywhere.
+    distance: m, from and to. Without a beacon the robot stands at the origin and looks anywhere. It moves at
+    a speed and a yaw rate drawn by lot, and the pan axis turns: what is exposed for long is blurred.
     """
 
     def __init__(
@@ -69,11 +71,18 @@ class Anywhere:
         self._seed, self._beacons = seed, beacons
         self._camera, self._distance = camera, distance
         self._pan = camera.pan.angle
+        self._rate = camera.pan.rate if camera.pan.kind == "scanning" else 0.0
         self._step = nanos(1.0 / camera.rate)
 
-    def at(self, k: int) -> Stand:
+    def at(self, k: int) -> Exposure:
         random = rng.stream(self._seed, f"frames.{k}")
-        return Stand(k * self._step, self._pose(random), self._pan)
+        pose, t = self._pose(random), (k + 1) * self._step
+        v, w = random.uniform(*SPEEDS), random.uniform(*YAW_RATES)
+        return Exposure(t, tuple(self._moment(pose, (v, w), t, dt) for dt in AROUND))
+
+    def _moment(self, pose: Pose, speeds: tuple[float, float], t: Nanos, dt: Nanos) -> Moment:
+        v, w = (speed * seconds(dt) for speed in speeds)
+        return Moment(t + dt, moved(pose, v, w), self._pan + self._rate * seconds(dt))
 
     def _pose(self, random: Rng) -> Pose:
         if not self._beacons:

@@ -65,7 +65,7 @@ def _beacons(loaded: Loaded) -> tuple[BeaconSpec, ...]:
 
 
 def make_poses(subject: Subject) -> Poses:
-    """Returns where the frames are taken; raises ScenarioError where a path is asked for and there is none."""
+    """Returns where the frames are taken; raises ScenarioError where the path asked for is none."""
     scenario, vision = subject.scenario, subject.vision
     kind = vision.poses or ("random" if scenario.reference is None else "path")
     if kind == "random":

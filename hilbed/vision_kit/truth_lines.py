@@ -43,5 +43,5 @@ def from_line(line: str) -> tuple[str, ShotTruth]:
 
 def _beacon(entry: dict[str, Any]) -> BeaconTruth:
     box = entry.pop("box")
-    numbers = {key: nan if value is None else value for key, value in entry.items()}
+    numbers: dict[str, Any] = {key: nan if value is None else value for key, value in entry.items()}
     return BeaconTruth(**numbers, box=None if box is None else tuple(box))
