@@ -20,6 +20,7 @@ from hilbed.cost import Cost
 from hilbed.sensors.camera import open_eye
 from hilbed.sensors.remote import EyeLost
 from hilbed.types import HilbedError, Image
+from hilbed.vision.lifeline import end_with
 
 _PROCESSOR = 36  # of the words after the name in /proc/PID/stat: where it ran last
 
@@ -74,6 +75,7 @@ def step_aside(processors: set[int]) -> None:
 def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the bench decides when it is over
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())
+    end_with(os.getppid(), signal.SIGTERM)  # even while it waits for a foreign detector
     descriptor, memory = map(int, sys.argv[1:])
     line = socket.socket(fileno=descriptor).makefile("rwb")
     shared = np.frombuffer(mmap(memory, 0), np.uint8)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import faulthandler
 import json
 import os
@@ -20,10 +19,9 @@ import numpy as np
 
 from hilbed.types import Image
 from hilbed.vision.foreign_code import Refused, blame, make
+from hilbed.vision.lifeline import end_with
 from hilbed.vision.returned import plain
 from hilbed.vision.seams import Shot
-
-_PR_SET_PDEATHSIG = 1
 
 
 def answers(line: BufferedRWPair, shared: Image) -> Iterator[dict[str, Any]]:
@@ -54,16 +52,9 @@ def answer(detector: Any, shot: Shot) -> dict[str, Any]:
         return {"invalid": blame(error)}
 
 
-def end_with(parent: int) -> None:
-    """Has the kernel end this process with its parent, even while foreign code never comes back."""
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:
-        sys.exit()
-
-
 def main() -> None:
     descriptor, memory, parent = map(int, sys.argv[1:])
-    end_with(parent)
+    end_with(parent)  # even while foreign code never comes back
     faulthandler.enable()
     faulthandler.register(signal.SIGUSR1)
     line = socket.socket(fileno=descriptor).makefile("rwb")
