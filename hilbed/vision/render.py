@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from math import atan2, cos, sin
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, TypeAlias
 from weakref import finalize
 
@@ -16,12 +13,13 @@ import numpy as np
 
 from hilbed.cost import Cost, perf_counter
 from hilbed.quiet import muted
-from hilbed.scene import COLOURS, BeaconSpec, Colour
+from hilbed.scene import BeaconSpec, Colour, ScenerySpec
 from hilbed.types import Image, Nanos, ScenarioError
 from hilbed.vision import egl
-from hilbed.vision.cone import obj
-from hilbed.vision.opengl import FAR, Pinhole, look, projection
+from hilbed.vision.opengl import Pinhole, look, projection
+from hilbed.vision.parts import of_beacon, of_object
 from hilbed.vision.seams import Viewpoint
+from hilbed.vision.stage import Stage
 
 with muted():
     import pybullet
@@ -29,7 +27,7 @@ with muted():
 Quiet: TypeAlias = Callable[[], AbstractContextManager[None]]
 
 GROUND: Colour = (0.6, 0.6, 0.6)
-_SQUARE = f"v {-FAR} {-FAR} 0\nv {FAR} {-FAR} 0\nv {FAR} {FAR} 0\nv {-FAR} {FAR} 0\nf 1 2 3 4\n"
+_EGL_CELL = 32  # pixels a cell of a marker: EGL blurs between pixels, TinyRenderer takes the nearest
 
 # OpenCV's coordinates of the frustum's left and upper edge: TinyRenderer samples a pixel at its left edge
 # and draws one row higher than OpenGL, which samples in the middle.
@@ -48,6 +46,7 @@ class Scenery:
     beacons: Sequence[BeaconSpec]
     egl: bool = False
     ground: bool = False
+    around: ScenerySpec = ScenerySpec()
 
 
 class BulletRenderer:
@@ -70,8 +69,9 @@ class BulletRenderer:
         if scenery.egl:
             egl.load(self._client)
         self._projection = projection(lens, _EGL_EDGES if scenery.egl else _TINY_EDGES)
-        self._beacons = self._load(scenery)
-        self._label = _labels([body for body, *_ in self._beacons])
+        around = scenery.around
+        beacons, others = map(of_beacon, scenery.beacons), map(of_object, around.objects)
+        self._stage = Stage(self._client, list(beacons), list(others), _EGL_CELL if scenery.egl else 1)
 
     def render(self, view: Viewpoint, t: Nanos) -> Image:
         """Returns (H, W, 3) RGB as seen from `view` at t."""
@@ -82,20 +82,16 @@ class BulletRenderer:
     def labels(self, view: Viewpoint, t: Nanos) -> Image:
         """Returns (H, W): 0 where no beacon is seen, k + 1 where that of index k is."""
         bodies = np.asarray(self._picture(view, t, 0)[4]).reshape(self._lens.height, self._lens.width)
-        return self._label[bodies + 1]
+        return self._stage.labels(bodies)
 
     def close(self) -> None:
         """Gives the client back; further frames are an error."""
         self._finalize()
 
-    def _picture(self, view: Viewpoint, t: Nanos, flags: int) -> Any:  # noqa: ARG002
+    def _picture(self, view: Viewpoint, t: Nanos, flags: int) -> Any:
         """Returns what PyBullet sees: width, height, colours, depths, bodies."""
         client, lens, cost = self._client, self._lens, self._cost
-        for body, x, y in self._beacons:
-            half = 0.5 * atan2(view.y - y, view.x - x)
-            pybullet.resetBasePositionAndOrientation(
-                body, (x, y, 0.0), (0.0, 0.0, sin(half), cos(half)), physicsClientId=client
-            )
+        self._stage.set(view, t)
         matrices = look(view), self._projection
         with self._quiet():
             start = perf_counter()
@@ -105,34 +101,7 @@ class BulletRenderer:
             cost.render += perf_counter() - start
         return picture
 
-    def _load(self, scenery: Scenery) -> list[tuple[int, float, float]]:
-        """Returns body, x and y (m) of each beacon."""
-        with TemporaryDirectory() as folder:
-            file = Path(folder) / "ground.obj"
-            if scenery.ground:
-                self._body(file, _SQUARE, GROUND)
-            bodies = []
-            for index, beacon in enumerate(scenery.beacons):
-                body = self._body(Path(folder) / f"{index}.obj", obj(beacon), COLOURS[beacon.colour])
-                bodies.append((body, *beacon.at))
-        return bodies
-
-    def _body(self, file: Path, mesh: str, colour: Colour) -> int:
-        """Loads a mesh by way of a file, since EGL crashes on one that comes as vertices."""
-        file.write_text(mesh)
-        shape = pybullet.createVisualShape(
-            pybullet.GEOM_MESH, fileName=str(file), rgbaColor=(*colour, 1.0), physicsClientId=self._client
-        )
-        return int(pybullet.createMultiBody(baseVisualShapeIndex=shape, physicsClientId=self._client))
-
 
 def _disconnect(client: int, quiet: Quiet) -> None:
     with quiet():
         pybullet.disconnect(client)
-
-
-def _labels(bodies: Sequence[int]) -> Image:
-    """Returns (n,) what each body is labelled as; the first is that of no body."""
-    labels = np.zeros(max(bodies, default=-1) + 2, np.uint8)
-    labels[[body + 1 for body in bodies]] = range(1, len(bodies) + 1)
-    return labels
