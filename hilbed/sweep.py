@@ -57,20 +57,25 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
         raise ScenarioError(f"--jobs {jobs}: at least one process has to run")
     variants = list(_variants(settings))
     for variant in variants:
-        _check_alone(load(scenario, variant).scenario)
+        check_alone(load(scenario, variant).scenario)
     numbers = parse_seeds(seeds)
     todo = [Job(scenario, variant, seed) for variant in variants for seed in numbers]
-    workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
-        results = run_all(todo, pool)
+    results = side_by_side(todo, jobs)
     tables = {variant: tabulate([r for r in results if r.job.settings == variant]) for variant in variants}
     with quiet_pipe():
         print(as_text(tables, results) if not as_json else as_json_text(tables, results))
     return 0 if all(result.status == 0 for result in results) else 1
 
 
-def _check_alone(scenario: Scenario) -> None:
+def side_by_side(todo: Sequence[Job], jobs: int | None) -> list[Result]:
+    """Runs jobs in processes, `jobs` of them at a time, else one a processor; their results in their order."""
+    workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
+        return run_all(todo, pool)
+
+
+def check_alone(scenario: Scenario) -> None:
     """Raises ScenarioError where runs side by side would be in each other's way."""
     if scenario.bus.carried:
         raise ScenarioError(

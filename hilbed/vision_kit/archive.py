@@ -36,7 +36,7 @@ class Archive:
     def __init__(
         self, folder: Path, settings: Sequence[str] = (), seed: int | None = None, detector: str | None = None
     ) -> None:
-        self._folder = folder
+        self.folder = folder
         self.about = _about(folder / DATASET)
         loaded = load(str(folder / SCENARIO), settings, seed, detector)
         self.subject = Subject(loaded._replace(name=str(self.about.get("scenario", folder.name))))
@@ -55,7 +55,7 @@ class Archive:
     def shots(self, count: int | None = None) -> Iterator[LabelledShot]:
         """Yields the first frames, or all; raises ScenarioError for an image that cannot be used."""
         for file, truth in self._truth[:count]:
-            image = read_image(self._folder / file, self._lens)
+            image = read_image(self.folder / file, self._lens)
             yield LabelledShot(Shot(image, truth.t, self._lens), truth)
 
 

@@ -43,12 +43,12 @@ def read_calibration(path: Path) -> Lens:
 def _lens(storage: cv2.FileStorage) -> Lens:
     width, height = (int(_number(storage, name)) for name in ("image_width", "image_height"))
     matrix = _matrix(storage, "camera_matrix", 9).reshape(3, 3)
-    distortion = _matrix(storage, "distortion_coefficients", 5)
+    k1, k2, p1, p2, k3 = _matrix(storage, "distortion_coefficients", 5).tolist()
     (fx, skew, cx), (_, fy, cy) = matrix[:2].tolist()
     if skew:
         raise ValueError(f"camera_matrix has a skew of {skew:g}, a Lens has none")
     tilt, roll = (_number(storage, name) for name in ("tilt", "roll"))
-    return Lens(width, height, fx, fy, cx, cy, *distortion.tolist(), tilt=tilt, roll=roll)
+    return Lens(width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, tilt, roll)
 
 
 def _number(storage: cv2.FileStorage, name: str) -> float:

@@ -12,16 +12,14 @@ from typing import Any, NamedTuple
 
 from hilbed import yaml12
 from hilbed.console import end_progress, progress, quiet_pipe
-from hilbed.record.disk import RecordError
-from hilbed.record.folder import write_whole
 from hilbed.scenario.load import load, resolved
-from hilbed.types import ScenarioError
 from hilbed.versions import versions
 from hilbed.vision.detectors import ForeignSpec, make_detector
 from hilbed.vision.seams import Closing, Detector
 from hilbed.vision_kit.archive import Archive, is_dataset
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.measures import judge, measure
+from hilbed.vision_kit.results import admit, keep
 from hilbed.vision_kit.studio import Studio, Subject
 from hilbed.vision_kit.trial import Rules, Trial, run_trial
 
@@ -38,9 +36,13 @@ class Footage(NamedTuple):
 
 def vision(options: Namespace) -> int:
     """Scores a detector on a scenario or a dataset, and returns 0 where all criteria are met, else 1."""
+    if options.sweep is not None:
+        from hilbed.vision_kit.sweep_command import sweep
+
+        return sweep(options)
     with footage(options) as (subject, total, shots):
         folder: Path = options.out or Path("runs") / f"vision-{subject.name}-{subject.scenario.seed}"
-        _admit(folder, options.force)
+        admit(folder, VERDICT, options.force)
         rules = Rules(subject.vision.visible, subject.vision.distance)
         with opened_detector(subject) as detector:
             try:
@@ -108,31 +110,11 @@ def conclude(subject: Subject, trial: Trial) -> dict[str, Any]:
     }
 
 
-def _admit(folder: Path, force: bool) -> None:
-    """Raises ScenarioError where the folder holds anything that must not be overwritten."""
-    if not folder.exists():
-        return
-    if not folder.is_dir():
-        raise ScenarioError(f"{folder} is not a folder; give another one with --out")
-    if any(folder.iterdir()):
-        if not (folder / VERDICT).exists():
-            raise ScenarioError(f"{folder} holds something else; give another folder with --out")
-        if not force:
-            raise ScenarioError(
-                f"{folder} exists; --force replaces what is in it, --out takes another folder"
-            )
-
-
 def _write(folder: Path, subject: Subject, trial: Trial, verdict: Mapping[str, Any]) -> None:
     from hilbed.vision_kit.page import write
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RecordError(f"{folder}: {error.strerror}") from error
     text = yaml12.write(resolved(subject.scenario, versions()))
-    write_whole(folder / VERDICT, (json.dumps(verdict, indent=2, allow_nan=False) + "\n").encode())
-    write_whole(folder / PAGE, write(subject, trial, verdict, text).encode())
+    keep(folder, VERDICT, verdict, PAGE, write(subject, trial, verdict, text))
 
 
 def _table(verdict: Mapping[str, Any], folder: Path) -> str:

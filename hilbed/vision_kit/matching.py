@@ -45,10 +45,14 @@ class Sighting(NamedTuple):
 
 
 class Stray(NamedTuple):
-    """A detection that shows no beacon; distance, visible: of the one nearest to it (NaN: none in sight)."""
+    """A detection that shows no beacon; distance, visible: of the one nearest to it (NaN: none in sight).
+
+    detection: its number in the frame.
+    """
 
     frame: int
     light: float
+    detection: int
     distance: float
     visible: float
 
@@ -122,5 +126,5 @@ def _stray(
 ) -> Stray:
     nearest = min(range(len(seen)), key=lambda b: abs(offsets[d, b]), default=None)
     if nearest is None:
-        return Stray(*frame, nan, nan)
-    return Stray(*frame, seen[nearest].distance, seen[nearest].visible)
+        return Stray(*frame, d, nan, nan)
+    return Stray(*frame, d, seen[nearest].distance, seen[nearest].visible)

@@ -14,9 +14,9 @@ from hilbed.problems import nearest
 from hilbed.scenario.load import Loaded
 from hilbed.scene import BeaconSpec
 from hilbed.sensors import CameraSpec
-from hilbed.sensors.exposure import Exposure, Moment
+from hilbed.sensors.exposure import Exposure, Moment, still
 from hilbed.sensors.eye import viewpoint
-from hilbed.types import ScenarioError
+from hilbed.types import Pose, ScenarioError
 from hilbed.vision.judging import VisionSpec
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import BeaconTruth, Shot, ShotTruth, Viewpoint
@@ -90,6 +90,14 @@ class Studio:
         scenery = Scenery(subject.beacons, camera.renderer == "egl", camera.ground)
         self._renderer = BulletRenderer(subject.lens, scenery, Cost())
 
+    @property
+    def lens(self) -> Lens:
+        return self._subject.lens
+
+    @property
+    def beacons(self) -> tuple[BeaconSpec, ...]:
+        return self._subject.beacons
+
     def __enter__(self) -> Self:
         return self
 
@@ -97,6 +105,16 @@ class Studio:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._renderer.close()
+
+    def __len__(self) -> int:
+        return self._subject.vision.frames
+
+    def __iter__(self) -> Iterator[LabelledShot]:
+        return self.shots(len(self))
+
+    def at(self, x: float, y: float, yaw: float, pan: float = 0.0) -> LabelledShot:
+        """Returns the frame from where the robot stands still at x, y (m) and yaw, pan (rad)."""
+        return self.shoot(still(0, Pose(x, y, yaw), pan))
 
     def take(self, k: int) -> LabelledShot:
         """Returns frame k."""
