@@ -13,9 +13,11 @@ import numpy as np
 
 from hilbed.cost import Cost, perf_counter
 from hilbed.quiet import muted
-from hilbed.scene import BeaconSpec, Colour, ScenerySpec
+from hilbed.scene import BeaconSpec, FloorSpec, ScenerySpec
 from hilbed.types import Image, Nanos, ScenarioError
 from hilbed.vision import egl
+from hilbed.vision.backdrop import Backdrop
+from hilbed.vision.light import Glare, bullet
 from hilbed.vision.opengl import Pinhole, look, projection
 from hilbed.vision.parts import of_beacon, of_object
 from hilbed.vision.seams import Viewpoint
@@ -26,7 +28,6 @@ with muted():
 
 Quiet: TypeAlias = Callable[[], AbstractContextManager[None]]
 
-GROUND: Colour = (0.6, 0.6, 0.6)
 _EGL_CELL = 32  # pixels a cell of a marker: EGL blurs between pixels, TinyRenderer takes the nearest
 
 # OpenCV's coordinates of the frustum's left and upper edge: TinyRenderer samples a pixel at its left edge
@@ -35,8 +36,6 @@ _TINY_EDGES = (0.0, -1.0)
 _EGL_EDGES = (-0.5, -0.5)
 
 _TINY = {"renderer": pybullet.ER_TINY_RENDERER}
-# Flat, exact colours: what the detector gets is the colour of the beacon.
-_LIGHT = {"shadow": 0, "lightAmbientCoeff": 1.0, "lightDiffuseCoeff": 0.0, "lightSpecularCoeff": 0.0}
 
 
 @dataclass(frozen=True)
@@ -47,6 +46,12 @@ class Scenery:
     egl: bool = False
     ground: bool = False
     around: ScenerySpec = ScenerySpec()
+
+    def surroundings(self) -> ScenerySpec:
+        """Returns what is to be drawn besides the beacons."""
+        if self.ground and self.around.floor is None:
+            return self.around.model_copy(update={"floor": FloorSpec()})
+        return self.around
 
 
 class BulletRenderer:
@@ -69,15 +74,23 @@ class BulletRenderer:
         if scenery.egl:
             egl.load(self._client)
         self._projection = projection(lens, _EGL_EDGES if scenery.egl else _TINY_EDGES)
-        around = scenery.around
+        around = scenery.surroundings()
         beacons, others = map(of_beacon, scenery.beacons), map(of_object, around.objects)
         self._stage = Stage(self._client, list(beacons), list(others), _EGL_CELL if scenery.egl else 1)
+        self._backdrop = None if around == ScenerySpec() else Backdrop(lens, around, scenery.beacons)
+        self._glare = Glare(lens, around.light)
+        self._light = bullet(around.light)
 
     def render(self, view: Viewpoint, t: Nanos) -> Image:
         """Returns (H, W, 3) RGB as seen from `view` at t."""
-        rgba = self._picture(view, t, pybullet.ER_NO_SEGMENTATION_MASK)[2]
-        image = np.asarray(rgba, np.uint8).reshape(self._lens.height, self._lens.width, 4)
-        return np.asarray(cv2.cvtColor(image, cv2.COLOR_RGBA2RGB), np.uint8)
+        _, _, rgba, depths, _ = self._picture(view, t, pybullet.ER_NO_SEGMENTATION_MASK)
+        shape = (self._lens.height, self._lens.width)
+        bodies = np.asarray(cv2.cvtColor(np.asarray(rgba, np.uint8).reshape(*shape, 4), cv2.COLOR_RGBA2RGB))
+        if self._backdrop is None:
+            return bodies
+        solid = (np.asarray(depths, np.float32).reshape(shape) < 1.0).view(np.uint8)
+        image = np.asarray(cv2.copyTo(bodies, solid, self._backdrop.paint(view)), np.uint8)
+        return image if self._glare.plain else self._glare.over(image, view)
 
     def labels(self, view: Viewpoint, t: Nanos) -> Image:
         """Returns (H, W): 0 where no beacon is seen, k + 1 where that of index k is."""
@@ -96,7 +109,7 @@ class BulletRenderer:
         with self._quiet():
             start = perf_counter()
             picture = pybullet.getCameraImage(
-                lens.width, lens.height, *matrices, **_LIGHT, **_TINY, flags=flags, physicsClientId=client
+                lens.width, lens.height, *matrices, **self._light, **_TINY, flags=flags, physicsClientId=client
             )
             cost.render += perf_counter() - start
         return picture
