@@ -125,9 +125,7 @@ def _parser() -> argparse.ArgumentParser:
     vision.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
     vision.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
     vision.add_argument("--out", type=Path, metavar="DIR", help="folder of page and numbers (runs/vision-…)")
-    vision.add_argument(
-        "--sweep", metavar="PATH=V1,V2", help="run the scenario with each value: what does it do to the robot?"
-    )
+    vision.add_argument("--sweep", metavar="PATH=V1,V2", help="run the scenario with each value")
     vision.add_argument("--seeds", metavar="A..B", help="seeds of the runs of --sweep (the scenario's)")
     vision.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
     vision.add_argument("--force", action="store_true", help="replace what an earlier command has written")

@@ -68,7 +68,7 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
 
 
 def side_by_side(todo: Sequence[Job], jobs: int | None) -> list[Result]:
-    """Runs jobs in processes, `jobs` of them at a time, else one a processor; their results in their order."""
+    """Runs jobs in `jobs` processes, else one a processor, and returns the results in their order."""
     workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 
 from hilbed import yaml12
 from hilbed.scenario.load import load
 from hilbed.types import Image, ScenarioError
+from hilbed.vision.calibration import read_lens
+from hilbed.vision.image_file import read_image
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import Shot, ShotTruth
-from hilbed.vision_kit.calibration import read_calibration, same
 from hilbed.vision_kit.dataset import CALIBRATION, DATASET, SCENARIO, TRUTH
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.studio import Subject
@@ -40,9 +41,7 @@ class Archive:
         self.about = _about(folder / DATASET)
         loaded = load(str(folder / SCENARIO), settings, seed, detector)
         self.subject = Subject(loaded._replace(name=str(self.about.get("scenario", folder.name))))
-        self._lens = read_calibration(folder / CALIBRATION)
-        if not same(self._lens, self.subject.lens):
-            raise ScenarioError(f"{folder / CALIBRATION}: is not of the camera in {SCENARIO} beside it")
+        self._lens = _lens(folder / CALIBRATION, self.subject.lens)
         self._truth = _truth(folder, int(self.about["frames"]))
 
     def __len__(self) -> int:
@@ -55,7 +54,7 @@ class Archive:
     def shots(self, count: int | None = None) -> Iterator[LabelledShot]:
         """Yields the first frames, or all; raises ScenarioError for an image that cannot be used."""
         for file, truth in self._truth[:count]:
-            image = read_image(self.folder / file, self._lens)
+            image = _image(self.folder / file, self._lens)
             yield LabelledShot(Shot(image, truth.t, self._lens), truth)
 
 
@@ -97,21 +96,18 @@ def _line(path: Path, number: int, line: str) -> tuple[str, ShotTruth]:
     return file, truth
 
 
-def read_image(path: Path, lens: Lens) -> Image:
-    """Returns an image (H, W, 3) RGB of the size that the calibration says; raises ScenarioError."""
-    try:
-        data = np.frombuffer(path.read_bytes(), np.uint8)
-    except OSError as error:
-        raise ScenarioError(f"{path}: {error.strerror}") from None
-    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
-    if image is None:
-        raise ScenarioError(f"{path}: is no image, or is cut off")
-    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
-        channels = 1 if image.ndim == 2 else image.shape[2]
-        raise ScenarioError(f"{path}: has {channels} channels of {image.dtype}, a frame has 3 of uint8")
-    height, width = image.shape[:2]
+def _lens(path: Path, expected: Lens) -> Lens:
+    """Returns the lens of the calibration, which has to be of the camera that the scenario describes."""
+    lens = replace(read_lens(path), tilt=expected.tilt, roll=expected.roll)
+    if not np.allclose(astuple(lens), astuple(expected), rtol=1e-9, atol=1e-12):
+        raise ScenarioError(f"{path}: is not of the camera in {SCENARIO} beside it")
+    return lens
+
+
+def _image(path: Path, lens: Lens) -> Image:
+    image = read_image(path)
+    height, width, _ = image.shape
     if (width, height) != (lens.width, lens.height):
-        raise ScenarioError(
-            f"{path}: is {width}×{height}, but {CALIBRATION} is for {lens.width}×{lens.height} pixels"
-        )
-    return np.ascontiguousarray(image[:, :, ::-1])
+        size = f"{lens.width}×{lens.height}"
+        raise ScenarioError(f"{path}: is {width}×{height}, but {CALIBRATION} is for {size} pixels")
+    return image

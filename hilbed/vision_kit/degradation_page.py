@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from hilbed.report import page, style
 from hilbed.vision_kit.dataset import png
 from hilbed.vision_kit.degradation import EFFECTS, Sweep, Variant
 from hilbed.vision_kit.labelled import LabelledShot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _COLOURS = ("right", "left", "third", "estimate", "odometry")
 _SHEET = ".shots.strips { grid-template-columns: minmax(0, 1fr); gap: 12px; }"
@@ -58,7 +62,7 @@ def figure(sweep: Sweep) -> str:
     return style.svg(sheet, "effects of the degradation")
 
 
-def _crosses(axes: style.Axes, x: Sequence[float], variants: Sequence[Variant]) -> None:
+def _crosses(axes: Axes, x: Sequence[float], variants: Sequence[Variant]) -> None:
     for at, variant in zip(x, variants, strict=True):
         if any(result.status > 1 for result in variant.results):
             axes.plot(at, 0.0, "x", color=style.STAND_IN["bad"], clip_on=False)

@@ -6,21 +6,18 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import Self
 
-from hilbed.angles import wrap
 from hilbed.clock import nanos
 from hilbed.cost import Cost
-from hilbed.plant import RecordedSpec
+from hilbed.plant import KinematicSpec, RecordedSpec, SimulatedSpec
 from hilbed.problems import nearest
 from hilbed.scenario.load import Loaded
-from hilbed.scene import BeaconSpec
+from hilbed.scene import BeaconSpec, ScenerySpec
 from hilbed.sensors import CameraSpec
-from hilbed.sensors.exposure import Exposure, Moment, still
-from hilbed.sensors.eye import viewpoint
+from hilbed.sensors.exposure import Exposure, still
+from hilbed.sensors.eye import Setting
 from hilbed.types import Pose, ScenarioError
 from hilbed.vision.judging import VisionSpec
 from hilbed.vision.lens import Lens
-from hilbed.vision.seams import BeaconTruth, Shot, ShotTruth, Viewpoint
-from hilbed.vision.truth import sights
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.poses import AlongPath, Anywhere, Poses
 
@@ -35,7 +32,8 @@ class Subject:
         self.name, self.scenario = loaded.name, loaded.scenario
         self.vision = loaded.scenario.vision or VisionSpec()
         self.camera_name, self.camera = _camera(loaded)
-        self.beacons = _beacons(loaded)
+        plant = _simulated(loaded)
+        self.beacons, self.scenery = tuple(plant.beacons), getattr(plant, "scenery", ScenerySpec())
 
     @property
     def lens(self) -> Lens:
@@ -57,11 +55,11 @@ def _camera(loaded: Loaded) -> tuple[str, CameraSpec]:
     return wanted, cameras[wanted]
 
 
-def _beacons(loaded: Loaded) -> tuple[BeaconSpec, ...]:
+def _simulated(loaded: Loaded) -> SimulatedSpec | KinematicSpec:
     plant = loaded.scenario.plant
     if isinstance(plant, RecordedSpec):
         raise ScenarioError(f"{loaded.name}: its robot is a recording, of which there are no frames")
-    return tuple(plant.beacons)
+    return plant
 
 
 def make_poses(subject: Subject) -> Poses:
@@ -83,12 +81,11 @@ class Studio:
     """
 
     def __init__(self, subject: Subject) -> None:
-        from hilbed.vision.render import BulletRenderer, Scenery
+        from hilbed.sensors.imager import open_imager
 
-        camera = subject.camera
         self._subject, self._poses = subject, make_poses(subject)
-        scenery = Scenery(subject.beacons, camera.renderer == "egl", camera.ground)
-        self._renderer = BulletRenderer(subject.lens, scenery, Cost())
+        setting = Setting(subject.beacons, subject.scenery, subject.scenario.seed, subject.camera_name)
+        self._imager = open_imager(subject.camera, setting, Cost())
 
     @property
     def lens(self) -> Lens:
@@ -104,7 +101,7 @@ class Studio:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._renderer.close()
+        self._imager.close()
 
     def __len__(self) -> int:
         return self._subject.vision.frames
@@ -127,24 +124,5 @@ class Studio:
 
     def shoot(self, exposure: Exposure) -> LabelledShot:
         """Returns the frame from wherever the camera is put."""
-        moment = exposure.at(exposure.t)
-        view = viewpoint(self._subject.camera.mount, moment)
-        image = self._renderer.render(view, exposure.t)
-        truth = ShotTruth(exposure.t, view, moment.pose, self._truth(view, moment))
-        return LabelledShot(Shot(image, exposure.t, self._subject.lens), truth)
-
-    def _truth(self, view: Viewpoint, moment: Moment) -> tuple[BeaconTruth, ...]:
-        lens = self._subject.lens
-        found = []
-        for k, sight in enumerate(sights(self._subject.beacons, view.x, view.y, view.yaw)):
-            inside = abs(sight.azimuth) < lens.fov / 2
-            column = lens.column(sight.azimuth) if inside else float("nan")
-            half = lens.fx * sight.half_width
-            box = (int(column - half), 0, int(column + half), lens.height - 1) if inside else None
-            body = wrap(sight.azimuth + moment.pan)
-            found.append(
-                BeaconTruth(
-                    k, sight.azimuth, 0.0, body, 0.0, sight.distance, float(inside), box, column, lens.cy
-                )
-            )
-        return tuple(found)
+        shot = self._imager.shoot(exposure)
+        return LabelledShot(shot, self._imager.truth(exposure, self._subject.beacons))

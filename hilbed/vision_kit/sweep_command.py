@@ -34,7 +34,8 @@ def sweep(options: Namespace) -> int:
     done = run_sweep(options.scenario, options.settings, options.sweep, seeds, options.jobs)
     from hilbed.vision_kit.degradation_page import write
 
-    keep(folder, NUMBERS, content(done), PAGE, write(done, _frames(options, done)))
+    numbers = content(done)
+    keep(folder, NUMBERS, numbers, PAGE, write(done, _frames(options, done)))
     with quiet_pipe():
         print(
             json.dumps(content(done), indent=2) if options.json else f"{table(done)}\npage: {folder / PAGE}"
