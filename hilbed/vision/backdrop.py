@@ -16,12 +16,11 @@ from hilbed.scene import BeaconSpec, ScenerySpec
 from hilbed.types import Array, Image
 from hilbed.vision.clip import Corners, HalfSpace, clip
 from hilbed.vision.opengl import FAR, NEAR, Pinhole, axes
-from hilbed.vision.planes import Plane, planes
+from hilbed.vision.planes import COARSER, Plane, planes
 from hilbed.vision.seams import Viewpoint
 
 _SMOOTH = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
 _BITS = 4  # after the point, in the corners of OpenCV's polygons
-_COARSER = 2  # levels from one strip to the next: each a quarter as fine as the one before
 
 
 class Backdrop:
@@ -31,6 +30,8 @@ class Backdrop:
         self._lens = lens
         self._sky = [round(255.0 * part) for part in spec.sky]
         self._planes = planes(spec, beacons)
+        self._corners = np.array([plane.corners for plane in self._planes]).reshape(-1, 4, 3)
+        self._normals = np.array([np.cross(p.right, p.up) for p in self._planes]).reshape(-1, 3)
         self._matrix = np.array([[lens.fx, 0.0, lens.cx], [0.0, lens.fy, lens.cy], [0.0, 0.0, 1.0]])
         self._frustum = _frustum(lens)
 
@@ -40,71 +41,85 @@ class Backdrop:
         image[:] = self._sky
         forward, left, up = np.array(axes(view))
         turn, eye = np.array([-left, -up, forward]), np.array([view.x, view.y, view.z])
-        for plane in self._planes:
-            self._draw(image, plane, turn, eye)
+        squares = ((self._corners - eye) @ turn.T).tolist()
+        offsets = ((eye - self._corners[:, 0]) * self._normals).sum(axis=1).tolist()
+        for plane, square, offset in zip(self._planes, squares, offsets, strict=True):
+            corners = clip(square, self._frustum) if offset > 0.0 else []
+            if corners and len(plane.tiles) == 1:
+                self._fill(image, corners, plane.tiles[0])
+            elif corners:
+                self._cover(image, corners, plane, offset, _frame(plane, turn, eye))
         return image
 
-    def _draw(self, image: Image, plane: Plane, turn: Array, eye: Array) -> None:
-        """Draws a plane in strips, each in as many pixels a tile as can be told apart there.
-
-        frame takes (u, v, 1), u and v along the plane's sides (m), to the camera's right, down and forward.
-        """
-        frame = np.column_stack((turn @ plane.right, turn @ plane.up, turn @ (plane.corner - eye)))
-        offset = float(np.linalg.det(frame))  # of the plane from the eye, negative where it is seen
-        if offset >= 0.0:
-            return
-        (width, height), square = plane.sides, ((0, 0), (1, 0), (1, 1), (0, 1))
-        corners = clip([tuple(frame @ (u * width, v * height, 1.0)) for u, v in square], self._frustum)
-        if not corners:
-            return
-        here = np.floor((eye - plane.corner) @ np.column_stack((plane.right, plane.up)) / plane.size)
-        frame[:, 2] += frame[:, :2] @ here * plane.size  # OpenCV counts no more than 32767 pixels of a texture
+    def _cover(self, image: Image, corners: Corners, plane: Plane, offset: float, frame: Array) -> None:
+        """Draws a plane with a pattern in strips, each in as many pixels as can be told apart there."""
         depths = [z for *_, z in corners]
-        for texture, start, end in _strips(plane, self._lens.fx * sqrt(-offset)):
-            if end > min(depths) and start < max(depths):
-                strip = clip(corners, [(0.0, 0.0, 1.0, -start), (0.0, 0.0, -1.0, end)])
-                if strip:
-                    self._fill(image, strip, texture, frame * (plane.size, plane.size, 1.0))
+        for level, near, far in _strips(plane, self._lens.fx * sqrt(offset)):
+            if far > min(depths) and near < max(depths):
+                strip = clip(corners, [(0.0, 0.0, 1.0, -near), (0.0, 0.0, -1.0, far)])
+                texture = plane.tiles[level]
+                if strip and len(texture) == 1:
+                    self._fill(image, strip, texture)
+                elif strip:
+                    texels = _texels(len(texture), plane.copies[level])
+                    self._paper(image, strip, texture, texels @ np.linalg.inv(self._matrix @ frame))
 
-    def _fill(self, image: Image, corners: Corners, texture: Image, frame: Array) -> None:
-        """Fills a polygon in the camera's axes; frame takes (tiles, tiles, 1) to them."""
-        points = np.array(corners) @ self._matrix.T
-        pixels = points[:, :2] / points[:, 2:]
-        if len(texture) == 1:
-            polygon = np.rint(pixels * (1 << _BITS)).astype(np.int32)
-            cv2.fillConvexPoly(image, polygon, texture[0, 0].tolist(), cv2.LINE_8, _BITS)
-            return
+    def _fill(self, image: Image, corners: Corners, colour: Image) -> None:
+        """Fills a polygon, in the camera's axes, with one colour."""
+        polygon = np.rint(self._pixels(corners) * (1 << _BITS)).astype(np.int32)
+        cv2.fillConvexPoly(image, polygon, colour[0, 0].tolist(), cv2.LINE_8, _BITS)
+
+    def _paper(self, image: Image, corners: Corners, texture: Image, back: Array) -> None:
+        """Fills a polygon with a texture; back takes pixels of the image to those of the texture."""
+        pixels = self._pixels(corners)
         left, top = np.maximum(np.floor(pixels.min(axis=0)).astype(int), 0).tolist()
         right, bottom = (np.ceil(pixels.max(axis=0)).astype(int) + 1).tolist()
         part = image[top:bottom, left:right]
         if part.size == 0:
             return
-        polygon = np.rint((pixels - (left, top)) * (1 << _BITS)).astype(np.int32)
         mask = np.zeros(part.shape[:2], np.uint8)
+        polygon = np.rint((pixels - (left, top)) * (1 << _BITS)).astype(np.int32)
         cv2.fillConvexPoly(mask, polygon, 255, cv2.LINE_8, _BITS)
-        texels = np.array([[len(texture), 0.0, -0.5], [0.0, -len(texture), -0.5], [0.0, 0.0, 1.0]])
         shift = np.array([[1.0, 0.0, left], [0.0, 1.0, top], [0.0, 0.0, 1.0]])
-        back = texels @ np.linalg.inv(self._matrix @ frame) @ shift
-        seen = cv2.warpPerspective(
-            texture, back, part.shape[1::-1], flags=_SMOOTH, borderMode=cv2.BORDER_WRAP
-        )
-        cv2.copyTo(seen, mask, part)
+        size = part.shape[1], part.shape[0]
+        paper = cv2.warpPerspective(texture, back @ shift, size, flags=_SMOOTH, borderMode=cv2.BORDER_WRAP)
+        cv2.copyTo(paper, mask, part)
+
+    def _pixels(self, corners: Corners) -> Array:
+        """Returns (n, 2) of corners in the camera's axes."""
+        points = np.array(corners) @ self._matrix.T
+        return np.asarray(points[:, :2] / points[:, 2:])
 
 
-def _strips(plane: Plane, scale: float) -> Iterator[tuple[Image, float, float]]:
-    """Yields the plane's tiles, finest first, and from where to where (m, depth) each is right.
+def _frame(plane: Plane, turn: Array, eye: Array) -> Array:
+    """Returns what takes (u, v, 1), in tiles from the one below the eye, to the camera's axes."""
+    sides = np.column_stack((plane.right, plane.up)) * plane.size
+    here = np.floor((eye - plane.corner) @ sides / plane.size**2)
+    return np.asarray(turn @ np.column_stack((sides, plane.corner + sides @ here - eye)))
+
+
+def _texels(size: int, copies: int) -> Array:
+    """Returns what takes (u, v, 1), in tiles from the middle one on, to pixels of `copies` tiles a side."""
+    tile, middle = size / copies, copies // 2
+    return np.array(
+        [[tile, 0.0, middle * tile - 0.5], [0.0, -tile, (copies - middle) * tile - 0.5], [0.0, 0.0, 1.0]]
+    )
+
+
+def _strips(plane: Plane, scale: float) -> Iterator[tuple[int, float, float]]:
+    """Yields levels of the plane's tiles, finest first, and from where to where (m, depth) each is right.
 
     A pixel covers depth/f of a plane across, and depth²/(f·offset) along it; taken is the geometric mean of
     both. scale: f √offset.
     """
-    texel = plane.size / len(plane.tiles[0])
-    start = NEAR
-    for level in range(0, len(plane.tiles), _COARSER):
-        last = level + _COARSER >= len(plane.tiles)
-        end = 2.0 * FAR if last else (texel * 2.0 ** (level + _COARSER / 2) * scale) ** (2.0 / 3.0)
-        if end > start:
-            yield plane.tiles[level], start, end
-            start = end
+    texel = plane.size * plane.copies[0] / len(plane.tiles[0])
+    near = NEAR
+    for level in range(len(plane.tiles)):
+        last = level == len(plane.tiles) - 1
+        far = 2.0 * FAR if last else (texel * COARSER ** (level + 0.5) * scale) ** (2.0 / 3.0)
+        if far > near:
+            yield level, near, far
+            near = far
 
 
 def _frustum(lens: Pinhole) -> list[HalfSpace]:
@@ -112,7 +127,7 @@ def _frustum(lens: Pinhole) -> list[HalfSpace]:
     left, right = (-1.0 - lens.cx) / lens.fx, (lens.width - lens.cx) / lens.fx
     top, bottom = (-1.0 - lens.cy) / lens.fy, (lens.height - lens.cy) / lens.fy
     return [
-        (0.0, 0.0, 1.0, -NEAR),
         (1.0, 0.0, -left, 0.0), (-1.0, 0.0, right, 0.0),
         (0.0, 1.0, -top, 0.0), (0.0, -1.0, bottom, 0.0),
+        (0.0, 0.0, 1.0, -NEAR),
     ]  # fmt: skip

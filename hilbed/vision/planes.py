@@ -15,14 +15,19 @@ from hilbed.vision.light import shade
 from hilbed.vision.opengl import FAR, Vector
 from hilbed.vision.textures import tile
 
+COARSER = 4
+"""How much coarser each image of a plane's tiles is than the one before."""
+_COPIES = 4  # of the finest tile
+
 Corner = tuple[float, float]
 
 
 class Plane(NamedTuple):
     """A rectangle: one corner (m, map), unit vectors along its sides, their lengths (m), and its tiles.
 
-    It is seen from where right × up points. tiles: the same again in 1, 1/2, 1/4 … of the pixels along each
-    side, down to one, for what is farther away; size: m that each covers.
+    It is seen from where right × up points. tiles: finest first, then each at a quarter of the pixels along
+    both sides, down to one, for what is farther away; size: m that a tile covers; copies: how many there are
+    of it along each side of an image, as OpenCV is five times slower where it has to repeat one.
     """
 
     corner: Array
@@ -31,6 +36,13 @@ class Plane(NamedTuple):
     sides: tuple[float, float]
     tiles: list[Image]
     size: float
+    copies: list[int]
+
+    @property
+    def corners(self) -> Array:
+        """(4, 3) m in the map."""
+        width, height = self.sides[0] * self.right, self.sides[1] * self.up
+        return np.array([self.corner, self.corner + width, self.corner + width + height, self.corner + height])
 
 
 def planes(spec: ScenerySpec, beacons: Sequence[BeaconSpec]) -> list[Plane]:
@@ -67,6 +79,8 @@ def _plane(surface: SurfaceSpec, light: LightSpec, frame: Array, sides: tuple[fl
     normal: Vector = tuple(np.cross(right, up).tolist())
     tiles = [cv2.convertScaleAbs(tile(surface), alpha=shade(light, normal))]
     while len(tiles[-1]) > 1:
-        half = len(tiles[-1]) // 2
-        tiles.append(np.asarray(cv2.resize(tiles[-1], (half, half), interpolation=cv2.INTER_AREA), np.uint8))
-    return Plane(corner, right, up, sides, [t.reshape(len(t), -1, 3) for t in tiles], surface.tile)
+        size = len(tiles[-1]) // COARSER
+        tiles.append(np.asarray(cv2.resize(tiles[-1], (size, size), interpolation=cv2.INTER_AREA), np.uint8))
+    copies = [_COPIES * 2**level if len(tile) > 1 else 1 for level, tile in enumerate(tiles)]
+    images = [np.tile(tile.reshape(len(tile), -1, 3), (n, n, 1)) for tile, n in zip(tiles, copies, strict=True)]
+    return Plane(corner, right, up, sides, images, surface.tile, copies)
