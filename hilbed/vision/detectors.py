@@ -22,12 +22,17 @@ class ColourSpec(Spec):
 
 
 class MarkersSpec(Spec):
-    """Finds ArUco or AprilTag markers; dictionary: the markers' family, by its name in OpenCV."""
+    """Finds ArUco or AprilTag markers, of the dictionaries that the beacons name.
+
+    dictionary: where no beacons are known, by its name in OpenCV; std: pixels, of the column of a marker's
+    middle, as measured on rendered frames, whose edges are as coarse as pixels; a real camera's are smooth.
+    """
 
     kind: Literal["markers"] = "markers"
-    dictionary: Literal["4X4_50", "5X5_50", "6X6_50", "APRILTAG_16h5", "APRILTAG_25h9", "APRILTAG_36h11"] = (
-        "4X4_50"
-    )
+    dictionary: Literal[
+        "4X4_50", "5X5_50", "6X6_50", "APRILTAG_16h5", "APRILTAG_25h9", "APRILTAG_36h11"
+    ] = "4X4_50"  # fmt: skip
+    std: Positive = 0.28
 
 
 def _code(value: Any) -> Any:
@@ -75,6 +80,20 @@ def patience(spec: AnyDetector) -> float:
     return spec.startup + spec.deadline if isinstance(spec, ForeignSpec) else 0.0
 
 
+def identified(spec: AnyDetector, beacons: Sequence[BeaconSpec]) -> list[int | None]:
+    """Returns by which index a detector knows each beacon: None where it has its mark in common, or none."""
+    marks = [_MARKS[spec.kind](k, beacon) for k, beacon in enumerate(beacons)]
+    return [k if mark is not None and marks.count(mark) == 1 else None for k, mark in enumerate(marks)]
+
+
+_MARKS: dict[str, Callable[[int, BeaconSpec], object]] = {
+    "colour": lambda _, beacon: beacon.colour,
+    "markers": lambda _, beacon: None if beacon.marker is None else (beacon.dictionary, beacon.marker),
+    "foreign": lambda k, _: k,
+}
+"""By what each kind of detector tells beacons apart."""
+
+
 def make_detector(
     spec: AnyDetector, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool = False
 ) -> Detector:
@@ -91,6 +110,12 @@ def _colour(_: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) 
     return ColourDetector(lens, beacons, anonymous)
 
 
+def _markers(spec: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) -> Detector:
+    from hilbed.vision.markers import MarkerDetector
+
+    return MarkerDetector(spec, lens, beacons, anonymous)
+
+
 def _foreign(spec: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) -> Detector:
     from hilbed.vision.foreign import ForeignDetector
 
@@ -98,5 +123,5 @@ def _foreign(spec: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bo
 
 
 _MAKERS: dict[str, Callable[[Any, Lens, Sequence[BeaconSpec], bool], Detector]] = {
-    "colour": _colour, "foreign": _foreign,
+    "colour": _colour, "markers": _markers, "foreign": _foreign,
 }  # fmt: skip
