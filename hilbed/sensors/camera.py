@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import nan, pi, radians
+from math import nan, pi
 from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, model_validator
@@ -15,38 +15,33 @@ from hilbed.ports import Witness
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.delivery import Delivery, DeliverySpec
 from hilbed.sensors.exposure import still
-from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Place, Ticket
+from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Setting, Ticket
 from hilbed.sensors.faults import misses, noisy, spurious
+from hilbed.sensors.imaging import ImagingSpec
 from hilbed.sensors.pan import make_pan
 from hilbed.sensors.pan_spec import FixedSpec, PanSpec
 from hilbed.sensors.troubles import Troubles
 from hilbed.spec import Finite, Fraction, Listed, NonNegative, Positive
 from hilbed.types import Image, Nanos, Reading, Rng, Snapshot, Truth
-from hilbed.vision.detectors import ColourSpec, DetectorSpec, make_detector, patience
+from hilbed.vision.detectors import ColourSpec, DetectorSpec, identified, make_detector, patience
 from hilbed.vision.egl import LARGEST_FRAME
-from hilbed.vision.lens import LARGEST, SMALLEST, Lens
 from hilbed.vision.seams import Detection
 from hilbed.vision.truth import SPURIOUS
 
-Size = Annotated[int, Field(ge=SMALLEST, le=LARGEST)]
 
-
-class CameraSpec(DeliverySpec):
+class CameraSpec(ImagingSpec, DeliverySpec):
     """A camera that measures azimuths of beacons in rendered frames.
 
     renderer: tiny (processor) or egl (at most 1024×768); ground: draw it, for pictures, at three times the
-    cost; width, height: pixels, 16 to 4096; fov_deg: horizontal field of view, degrees, inside (0, 180);
-    mount: m, the optical centre on the pan axis in the robot's frame; detector: a kind, or somebody's code; identity: colour or anonymous; noise:
-    rad, standard deviation added to each azimuth; missed: probability for each detection; spurious: mean
-    number of false azimuths a frame.
+    cost; mount: m, the optical centre on the pan axis in the robot's frame; detector: a kind, or somebody's
+    code; identity: colour or anonymous; noise: rad, standard deviation added to each azimuth; missed:
+    probability for each detection; spurious: mean number of false azimuths a frame. What it takes to expose
+    and to read out a frame is within latency and the time between frames.
     """
 
     kind: Literal["camera"] = "camera"
     renderer: Literal["tiny", "egl"] = "tiny"
     ground: bool = False
-    width: Size = 640
-    height: Size = 64
-    fov_deg: Annotated[float, Field(gt=0, lt=180)] = 90.0
     mount: Listed[tuple[Finite, Finite, Positive]] = (0.0, 0.0, 0.3)
     pan: PanSpec = FixedSpec()
     detector: DetectorSpec = ColourSpec()
@@ -62,9 +57,17 @@ class CameraSpec(DeliverySpec):
             raise ValueError(f"renderer egl draws at most {width}×{height} pixels; tiny draws any size")
         return self
 
-    @property
-    def lens(self) -> Lens:
-        return Lens.of_fov(self.width, self.height, radians(self.fov_deg))
+    @model_validator(mode="after")
+    def _in_time(self) -> Self:
+        span = self.exposure + self.readout
+        if span > 1.0 / self.rate:
+            raise ValueError(f"exposure and readout take {span:g} s, but a frame only {1 / self.rate:g} s")
+        if span / 2.0 > self.latency:
+            raise ValueError(
+                f"latency {self.latency:g} s counts from the middle of the exposure, which ends "
+                f"{span / 2:g} s later"
+            )
+        return self
 
     def kinds(self) -> dict[str, int]:
         """Returns what it measures, with the number of components."""
@@ -178,13 +181,12 @@ def snapshot(t: Nanos, image: Image, pan: float, findings: Sequence[Finding]) ->
 
 
 def names(spec: CameraSpec, beacons: Sequence[BeaconSpec]) -> list[int | None]:
-    """Returns by which index each beacon is recognised: None if anonymous or of a colour that another has."""
-    colours = [beacon.colour for beacon in beacons]
-    known = spec.identity == "colour"
-    return [k if known and colours.count(colour) == 1 else None for k, colour in enumerate(colours)]
+    """Returns by which index each beacon is recognised: None if anonymous, or not to be told from another."""
+    known = identified(spec.detector, beacons)
+    return [None] * len(known) if spec.identity == "anonymous" else known
 
 
-def open_eye(spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, separate: bool = False) -> Eye:
+def open_eye(spec: CameraSpec, setting: Setting, cost: Cost, separate: bool = False) -> Eye:
     """Returns the eye that a scenario describes, in a process of its own if `separate`.
 
     Both see the same to the bit. Raises ScenarioError where the renderer does not work.
@@ -192,10 +194,10 @@ def open_eye(spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, separa
     if separate:
         from hilbed.sensors.remote import PATIENCE, RemoteEye
 
-        return RemoteEye(spec, beacons, cost, PATIENCE + patience(spec.detector))
-    from hilbed.vision.render import BulletRenderer, Scenery
+        return RemoteEye(spec, setting, cost, PATIENCE + patience(spec.detector))
+    from hilbed.sensors.imager import open_imager
 
-    lens = spec.lens
-    renderer = BulletRenderer(lens, Scenery(beacons, spec.renderer == "egl", spec.ground), cost)
-    detector = make_detector(spec.detector, lens, beacons, spec.identity == "anonymous")
-    return LocalEye(Place(spec.mount, lens), beacons, renderer, detector, cost)
+    imager = open_imager(spec, setting, cost)
+    anonymous = spec.identity == "anonymous"
+    detector = make_detector(spec.detector, imager.lens, setting.beacons, anonymous)
+    return LocalEye(imager, setting.beacons, detector, cost)

@@ -3,34 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import cos, nan, sin
-from typing import NamedTuple, Protocol, TypeAlias
+from math import nan
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 
 from hilbed.cost import Cost, perf_counter
-from hilbed.scene import BeaconSpec
-from hilbed.sensors.exposure import Exposure, Moment
+from hilbed.scene import BeaconSpec, ScenerySpec
+from hilbed.sensors.exposure import Exposure
 from hilbed.types import Image, Pose
-from hilbed.vision.lens import Lens
 from hilbed.vision.seams import (
     Closing,
     Detection,
     DetectionFailed,
     Detector,
-    Renderer,
     Shot,
     Trouble,
-    Viewpoint,
 )
 from hilbed.vision.truth import SPURIOUS, match, sights
 
-Mount = tuple[float, float, float]
+if TYPE_CHECKING:
+    from hilbed.sensors.imager import Imager
 
 
-class Place(NamedTuple):
-    """A camera on its robot: optical centre (m, robot's frame) and lens."""
+class Setting(NamedTuple):
+    """What a camera is put in front of, and whose noise it has: the run's seed and the camera's own name."""
 
-    mount: Mount
-    lens: Lens
+    beacons: tuple[BeaconSpec, ...]
+    scenery: ScenerySpec = ScenerySpec()
+    seed: int = 0
+    name: str = "camera"
 
 
 class Finding(NamedTuple):
@@ -75,36 +75,27 @@ class Eye(Protocol):
 
 
 class LocalEye:
-    """Renders what is seen from its place and runs the detector on it, at once.
+    """Exposes a frame and runs the detector on it, at once; cost: the renderer's."""
 
-    beacons: those that renderer and detector know; cost: the renderer's.
-    """
-
-    def __init__(
-        self, place: Place, beacons: Sequence[BeaconSpec], renderer: Renderer, detector: Detector, cost: Cost
-    ) -> None:
+    def __init__(self, imager: Imager, beacons: Sequence[BeaconSpec], detector: Detector, cost: Cost) -> None:
         self.beacons = tuple(beacons)
         self.cost = cost
-        self._mount, self._lens = place
-        self._renderer = renderer
-        self._detector = detector
+        self._imager, self._detector = imager, detector
 
     def look(self, exposure: Exposure) -> Ticket:
         """Exposes a frame."""
         cost = self.cost
         start, rendered = perf_counter(), cost.render
+        shot = self._imager.shoot(exposure)
         moment = exposure.at(exposure.t)
-        view = viewpoint(self._mount, moment)
-        image = self._renderer.render(view, exposure.t)
-        centre = Pose(view.x, view.y, moment.pose.yaw)
-        shot = Shot(image, exposure.t, self._lens)
-        glimpse = self._judged(shot, centre, moment.pan)
+        view = self._imager.viewpoint(moment)
+        glimpse = self._judged(shot, Pose(view.x, view.y, moment.pose.yaw), moment.pan)
         cost.vision += perf_counter() - start - (cost.render - rendered)
         return lambda: glimpse
 
     def close(self) -> None:
         """Gives back what renderer and detector hold."""
-        self._renderer.close()
+        self._imager.close()
         if isinstance(self._detector, Closing):
             self._detector.close()
 
@@ -124,11 +115,3 @@ class LocalEye:
             azimuth = nan if beacon == SPURIOUS else seen[beacon].azimuth
             found.append(Finding(detection, beacon, azimuth))
         return found
-
-
-def viewpoint(mount: Mount, moment: Moment) -> Viewpoint:
-    """Returns where a camera on `mount` (m, robot's frame) is and looks."""
-    forward, left, height = mount
-    (x, y, yaw), pan = moment.pose, moment.pan
-    c, s = cos(yaw), sin(yaw)
-    return Viewpoint(x + c * forward - s * left, y + s * forward + c * left, height, yaw + pan)

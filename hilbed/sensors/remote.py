@@ -6,7 +6,6 @@ import os
 import pickle
 import socket
 import sys
-from collections.abc import Sequence
 from contextlib import suppress
 from io import BufferedRWPair
 from mmap import mmap
@@ -17,9 +16,8 @@ from weakref import finalize
 import numpy as np
 
 from hilbed.cost import Cost, perf_counter
-from hilbed.scene import BeaconSpec
 from hilbed.sensors.exposure import Exposure
-from hilbed.sensors.eye import Glimpse, Ticket
+from hilbed.sensors.eye import Glimpse, Setting, Ticket
 from hilbed.types import HilbedError, Image
 
 if TYPE_CHECKING:
@@ -42,10 +40,8 @@ class RemoteEye:
     standard output or error is lost; it ends with the socket, so also when this process is killed.
     """
 
-    def __init__(
-        self, spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, patience: float = PATIENCE
-    ) -> None:
-        self.beacons, self.cost = tuple(beacons), cost
+    def __init__(self, spec: CameraSpec, setting: Setting, cost: Cost, patience: float = PATIENCE) -> None:
+        self.beacons, self.cost = setting.beacons, cost
         self._ready = self._asked = False
         try:
             self._process, self._socket, memory = _start(spec.height * spec.width * 3)
@@ -57,7 +53,7 @@ class RemoteEye:
         grace = _LAST_WORDS if spec.detector.kind == "foreign" else 0.0
         self._finalize = finalize(self, _end, self._process, self._line, grace)
         self._image: Image = np.frombuffer(memory, np.uint8).reshape(spec.height, spec.width, 3)
-        self._send((spec, self.beacons))
+        self._send((spec, setting))
         if spec.renderer == "egl" or spec.detector.kind == "foreign":
             self._meet()  # one that does not work is an error of the scenario: found before it is run
 

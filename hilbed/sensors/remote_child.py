@@ -45,11 +45,11 @@ def answers(asked: Iterator[Any], shared: Image) -> Iterator[object]:
 def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     """Yields None when the eye is ready; then, with each image in `shared`, findings and seconds it took.
 
-    asked: first spec and beacons, then the exposure of each frame.
+    asked: first spec and setting, then the exposure of each frame.
     """
-    spec, beacons = next(asked)
+    spec, setting = next(asked)
     cost, processors = Cost(), os.sched_getaffinity(0)
-    eye = open_eye(spec, beacons, cost)
+    eye = open_eye(spec, setting, cost)
     yield None
     for exposure in asked:
         step_aside(processors)

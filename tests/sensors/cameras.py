@@ -14,7 +14,8 @@ from hilbed.effects import Effects
 from hilbed.rng import stream
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.camera import Camera, CameraSpec, open_eye
-from hilbed.sensors.eye import LocalEye, Place
+from hilbed.sensors.eye import LocalEye, Setting
+from hilbed.sensors.imager import Imager, Place
 from hilbed.types import Image, Nanos, Pose, Reading, Snapshot, Transfer, Truth
 from hilbed.vision.seams import Detection, Shot, Viewpoint
 
@@ -90,8 +91,8 @@ class Bench:
         spec = CameraSpec.model_validate(block)
         self.notes, self.effects, self.cost = Notes(), Effects([1.0, 1.0]), Cost()
         self.ideal = Ideal(spec, beacons)
-        ideal = LocalEye(Place(spec.mount, spec.lens), beacons, self.ideal, self.ideal, self.cost)
-        eye = open_eye(spec, beacons, self.cost) if rendered else ideal
+        ideal = LocalEye(Imager(Place(spec.mount, spec.lens), self.ideal), beacons, self.ideal, self.cost)
+        eye = open_eye(spec, Setting(beacons), self.cost) if rendered else ideal
         self.camera = Camera(spec, eye, stream(seed, "camera"), self.effects, self.notes)
 
     def expose(self, frames: int, pose: Pose = ORIGIN) -> list[Reading]:

@@ -20,6 +20,7 @@ from hilbed.effects import Effects
 from hilbed.rng import stream
 from hilbed.sensors.camera import Camera, CameraSpec, open_eye
 from hilbed.sensors.exposure import still
+from hilbed.sensors.eye import Setting
 from hilbed.sensors.remote import EyeLost, RemoteEye
 from hilbed.types import Nanos, Pose, Reading, ScenarioError, Snapshot, Truth
 from tests.sensors.cameras import BEACONS, ORIGIN, Notes
@@ -50,7 +51,9 @@ class Diary(Notes):
 def drive(block: dict[str, Any], separate: bool, periods: int = 150) -> tuple[Diary, list[object]]:
     """Turns a robot for a while, blind and dazzled in turn, and returns what witness and controller heard."""
     spec, cost, effects, diary = CameraSpec.model_validate(block), Cost(), Effects([1.0]), Diary()
-    camera = Camera(spec, open_eye(spec, BEACONS, cost, separate), stream(1, "camera"), effects, diary)
+    camera = Camera(
+        spec, open_eye(spec, Setting(BEACONS), cost, separate), stream(1, "camera"), effects, diary
+    )
     heard: list[object] = []
     for k in range(periods):
         diary.now = k * PERIOD
@@ -69,7 +72,7 @@ def drive(block: dict[str, Any], separate: bool, periods: int = 150) -> tuple[Di
 
 @contextmanager
 def eye() -> Iterator[RemoteEye]:
-    remote = RemoteEye(CameraSpec(), BEACONS, Cost())
+    remote = RemoteEye(CameraSpec(), Setting(BEACONS), Cost())
     try:
         yield remote
     finally:
@@ -139,7 +142,7 @@ def test_no_child_is_left_after_close_nor_when_the_eye_is_forgotten() -> None:
     with eye() as remote:
         assert alive(remote.pid)
     assert not alive(remote.pid)
-    remote = RemoteEye(CameraSpec(), BEACONS, Cost())
+    remote = RemoteEye(CameraSpec(), Setting(BEACONS), Cost())
     pid = remote.pid
     assert alive(pid)
     del remote
@@ -192,13 +195,13 @@ def test_an_egl_that_does_not_work_is_an_error_of_the_scenario(monkeypatch: pyte
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere")
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nowhere")
     with pytest.raises(ScenarioError, match="egl does not work here"):
-        RemoteEye(CameraSpec(renderer="egl"), BEACONS, Cost())
+        RemoteEye(CameraSpec(renderer="egl"), Setting(BEACONS), Cost())
 
 
 def test_a_process_that_cannot_be_started_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/nowhere/python")
     with pytest.raises(EyeLost, match="No such file"):
-        RemoteEye(CameraSpec(), BEACONS, Cost())
+        RemoteEye(CameraSpec(), Setting(BEACONS), Cost())
 
 
 def test_an_interrupt_does_not_reach_the_child() -> None:
@@ -225,8 +228,9 @@ from hilbed.cost import Cost
 from hilbed.sensors.camera import CameraSpec, open_eye
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.exposure import still
+from hilbed.sensors.eye import Setting
 from hilbed.types import Pose
-eye = open_eye(CameraSpec(), [BeaconSpec(at=(4.0, 0.0))], Cost(), separate=True)
+eye = open_eye(CameraSpec(), Setting((BeaconSpec(at=(4.0, 0.0)),)), Cost(), separate=True)
 assert eye.look(still(0, Pose(0.0, 0.0, 0.0)))().findings
 print(eye.pid, flush=True)
 sys.stdin.buffer.raw.read() if len(sys.argv) > 1 else None
