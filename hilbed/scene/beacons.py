@@ -42,8 +42,8 @@ class BeaconSpec(Spec):
     cylinder, a sphere whose top is at `height`, a board or a box; radii (m) at the foot, that is half the
     width of what is no cone, and at a cone's top; height m. Colours lie 30° apart in hue. marker: its number,
     on the square below the upper edge of a board, on each side of a box (then a cube) and three times around
-    a cylinder; dictionary: the marker's, by its name in OpenCV; facing: rad, where board, box or cylinder look,
-    none: always towards the camera; flash: none for a beacon that is always lit.
+    a cylinder; dictionary: the marker's, by its name in OpenCV; facing: rad, where board, box or marker
+    look, none: always towards the camera; flash: none for a beacon that is always lit.
     """
 
     at: Point

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import pi
 from typing import Annotated, Any, Literal, Self
 
@@ -11,6 +12,8 @@ from hilbed.scene.colours import AnyColour
 from hilbed.spec import Finite, Fraction, NonNegative, Point, Positive, Spec
 
 Pattern = Literal["plain", "checker", "noise", "carpet", "wood", "bricks"]
+Corner = tuple[float, float]
+Rectangle = tuple[Corner, Corner]
 Count = Annotated[int, Field(ge=0, le=100)]
 
 
@@ -51,6 +54,14 @@ class WallsSpec(SurfaceSpec):
         ):
             raise ValueError(f"opposite {self.opposite} must lie beyond corner {self.corner} in x and y")
         return self
+
+    def room(self, beacons: Sequence[Corner]) -> Rectangle:
+        """Returns the corners (m, map) of least and of largest x and y between the walls."""
+        if self.corner and self.opposite:
+            return self.corner, self.opposite
+        xs, ys = [x for x, _ in beacons] or [0.0], [y for _, y in beacons] or [0.0]
+        margin = self.margin
+        return (min(xs) - margin, min(ys) - margin), (max(xs) + margin, max(ys) + margin)
 
 
 class ObjectSpec(Spec):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from math import cos, pi, sin
 from typing import NamedTuple
 
@@ -88,10 +89,10 @@ def marked_cylinder(radius: float, low: float, high: float) -> Mesh:
 
 
 def _band(ring: Iterable[tuple[float, float]], low: float, high: float, repeat: int) -> Mesh:
-    """Returns upright faces between the points (radius, angle) and a lid; the texture spans `repeat` faces."""
+    """Returns upright faces between points (radius, angle), and a lid; the texture spans `repeat` faces."""
     points = [(r * cos(a), r * sin(a)) for r, a in ring]
     mesh = Mesh([], [], [])
-    for k, (one, other) in enumerate(zip(points, points[1:], strict=False)):
+    for k, (one, other) in enumerate(pairwise(points)):
         first = len(mesh.vertices)
         mesh.vertices.extend([(*one, low), (*other, low), (*other, high), (*one, high)])
         mesh.faces.append((first, first + 1, first + 2, first + 3))

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from hilbed.scene import BeaconSpec, LightSpec, ScenerySpec, WallsSpec
-from hilbed.scene.scenery import SurfaceSpec
+from hilbed.scene import BeaconSpec, LightSpec, ScenerySpec
+from hilbed.scene.scenery import Rectangle, SurfaceSpec
 from hilbed.types import Array, Image
 from hilbed.vision.light import shade
 from hilbed.vision.opengl import FAR, Vector
@@ -19,7 +19,7 @@ COARSER = 4
 """How much coarser each image of a plane's tiles is than the one before."""
 _COPIES = 4  # of the finest tile
 
-Corner = tuple[float, float]
+_EVERYWHERE: Rectangle = (-FAR, -FAR), (FAR, FAR)
 
 
 class Plane(NamedTuple):
@@ -42,12 +42,16 @@ class Plane(NamedTuple):
     def corners(self) -> Array:
         """(4, 3) m in the map."""
         width, height = self.sides[0] * self.right, self.sides[1] * self.up
-        return np.array([self.corner, self.corner + width, self.corner + width + height, self.corner + height])
+        return np.array(
+            [self.corner, self.corner + width, self.corner + width + height, self.corner + height]
+        )
 
 
 def planes(spec: ScenerySpec, beacons: Sequence[BeaconSpec]) -> list[Plane]:
     """Returns the floor, to the walls or as far as the eye can see, and the walls from inside."""
-    (x0, y0), (x1, y1) = room(spec.walls, beacons) if spec.walls else ((-FAR, -FAR), (FAR, FAR))
+    (x0, y0), (x1, y1) = _EVERYWHERE
+    if spec.walls:
+        (x0, y0), (x1, y1) = spec.walls.room([beacon.at for beacon in beacons])
     found = []
     if spec.floor:
         corner = np.array([[x0, y0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -64,23 +68,18 @@ def planes(spec: ScenerySpec, beacons: Sequence[BeaconSpec]) -> list[Plane]:
     return found
 
 
-def room(walls: WallsSpec, beacons: Sequence[BeaconSpec]) -> tuple[Corner, Corner]:
-    """Returns the corners (m, map) of least and of largest x and y between the walls."""
-    if walls.corner and walls.opposite:
-        return walls.corner, walls.opposite
-    xs, ys = [b.at[0] for b in beacons] or [0.0], [b.at[1] for b in beacons] or [0.0]
-    margin = walls.margin
-    return (min(xs) - margin, min(ys) - margin), (max(xs) + margin, max(ys) + margin)
-
-
 def _plane(surface: SurfaceSpec, light: LightSpec, frame: Array, sides: tuple[float, float]) -> Plane:
     """frame: (3, 3) corner, right and up, one a row."""
     corner, right, up = frame
     normal: Vector = tuple(np.cross(right, up).tolist())
-    tiles = [cv2.convertScaleAbs(tile(surface), alpha=shade(light, normal))]
+    tiles = [np.asarray(cv2.convertScaleAbs(tile(surface), alpha=shade(light, normal)), np.uint8)]
     while len(tiles[-1]) > 1:
         size = len(tiles[-1]) // COARSER
         tiles.append(np.asarray(cv2.resize(tiles[-1], (size, size), interpolation=cv2.INTER_AREA), np.uint8))
-    copies = [_COPIES * 2**level if len(tile) > 1 else 1 for level, tile in enumerate(tiles)]
-    images = [np.tile(tile.reshape(len(tile), -1, 3), (n, n, 1)) for tile, n in zip(tiles, copies, strict=True)]
+    copies = [_COPIES * 2**level if len(one) > 1 else 1 for level, one in enumerate(tiles)]
+    images = [_repeated(one, n) for one, n in zip(tiles, copies, strict=True)]
     return Plane(corner, right, up, sides, images, surface.tile, copies)
+
+
+def _repeated(tile: Image, copies: int) -> Image:
+    return np.tile(tile.reshape(len(tile), -1, 3), (copies, copies, 1))

@@ -14,6 +14,7 @@ import numpy as np
 from hilbed.cost import Cost, perf_counter
 from hilbed.quiet import muted
 from hilbed.scene import BeaconSpec, FloorSpec, ScenerySpec
+from hilbed.scene.chance import made_up
 from hilbed.types import Image, Nanos, ScenarioError
 from hilbed.vision import egl
 from hilbed.vision.backdrop import Backdrop
@@ -28,6 +29,7 @@ with muted():
 
 Quiet: TypeAlias = Callable[[], AbstractContextManager[None]]
 
+NOTHING = ScenerySpec()
 _EGL_CELL = 32  # pixels a cell of a marker: EGL blurs between pixels, TinyRenderer takes the nearest
 
 # OpenCV's coordinates of the frustum's left and upper edge: TinyRenderer samples a pixel at its left edge
@@ -40,18 +42,19 @@ _TINY = {"renderer": pybullet.ER_TINY_RENDERER}
 
 @dataclass(frozen=True)
 class Scenery:
-    """What is drawn, and by which renderer: ground makes a frame three times as dear."""
+    """What is drawn, and by which renderer; ground: a grey floor where the scenery has none."""
 
     beacons: Sequence[BeaconSpec]
     egl: bool = False
     ground: bool = False
-    around: ScenerySpec = ScenerySpec()
+    around: ScenerySpec = NOTHING
 
     def surroundings(self) -> ScenerySpec:
-        """Returns what is to be drawn besides the beacons."""
-        if self.ground and self.around.floor is None:
-            return self.around.model_copy(update={"floor": FloorSpec()})
-        return self.around
+        """Returns what is to be drawn besides the beacons, all of it stated."""
+        around = made_up(self.around, self.beacons)
+        if self.ground and around.floor is None:
+            return around.model_copy(update={"floor": FloorSpec()})
+        return around
 
 
 class BulletRenderer:
@@ -70,14 +73,14 @@ class BulletRenderer:
         if self._client < 0:
             raise ScenarioError("PyBullet has no client left for the camera: too many cameras in one process")
         self._quiet: Quiet = egl.silence if scenery.egl else nullcontext  # EGL prints as it draws
-        self._finalize = finalize(self, _disconnect, self._client, self._quiet)
+        self._finalize = finalize(self, egl.release if scenery.egl else pybullet.disconnect, self._client)
         if scenery.egl:
             egl.load(self._client)
         self._projection = projection(lens, _EGL_EDGES if scenery.egl else _TINY_EDGES)
         around = scenery.surroundings()
         beacons, others = map(of_beacon, scenery.beacons), map(of_object, around.objects)
         self._stage = Stage(self._client, list(beacons), list(others), _EGL_CELL if scenery.egl else 1)
-        self._backdrop = None if around == ScenerySpec() else Backdrop(lens, around, scenery.beacons)
+        self._backdrop = None if around == NOTHING else Backdrop(lens, around, scenery.beacons)
         self._glare = Glare(lens, around.light)
         self._light = bullet(around.light)
 
@@ -85,7 +88,7 @@ class BulletRenderer:
         """Returns (H, W, 3) RGB as seen from `view` at t."""
         _, _, rgba, depths, _ = self._picture(view, t, pybullet.ER_NO_SEGMENTATION_MASK)
         shape = (self._lens.height, self._lens.width)
-        bodies = np.asarray(cv2.cvtColor(np.asarray(rgba, np.uint8).reshape(*shape, 4), cv2.COLOR_RGBA2RGB))
+        bodies = _rgb(np.asarray(rgba, np.uint8).reshape(*shape, 4))
         if self._backdrop is None:
             return bodies
         solid = (np.asarray(depths, np.float32).reshape(shape) < 1.0).view(np.uint8)
@@ -109,12 +112,12 @@ class BulletRenderer:
         with self._quiet():
             start = perf_counter()
             picture = pybullet.getCameraImage(
-                lens.width, lens.height, *matrices, **self._light, **_TINY, flags=flags, physicsClientId=client
-            )
+                lens.width, lens.height, *matrices, **self._light, **_TINY,
+                flags=flags, physicsClientId=client,
+            )  # fmt: skip
             cost.render += perf_counter() - start
         return picture
 
 
-def _disconnect(client: int, quiet: Quiet) -> None:
-    with quiet():
-        pybullet.disconnect(client)
+def _rgb(rgba: Image) -> Image:
+    return np.asarray(cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB), np.uint8)

@@ -26,8 +26,8 @@ UNLIT = 0.1
 class Stage:
     """Beacons and everything else that may hide them.
 
-    beacons, others: what to load into the client; fine: pixels a cell of a texture, 1 where the renderer takes
-    the nearest pixel of it, more where it blurs them.
+    beacons, others: what to load into the client; fine: pixels a cell of a texture, 1 where the renderer
+    takes the nearest pixel of it, more where it blurs them.
     """
 
     def __init__(self, client: int, beacons: Sequence[Part], others: Sequence[Part], fine: int) -> None:

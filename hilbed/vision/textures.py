@@ -35,7 +35,7 @@ def _checker(_: Rng) -> Array:
 def _noise(rng: Rng) -> Array:
     """Specks of all sizes up to an eighth of the tile."""
     octaves = [_smooth(rng.standard_normal((SIZE, SIZE)), width) for width in (1, 3, 9, 32)]
-    return 0.5 + 0.25 * np.sum(octaves, axis=0)
+    return np.asarray(0.5 + 0.25 * np.sum(octaves, axis=0))
 
 
 def _carpet(rng: Rng) -> Array:
@@ -66,12 +66,13 @@ def _bricks(rng: Rng) -> Array:
 
 
 PATTERNS: dict[str, Callable[[Rng], Array]] = {
-    "plain": _plain, "checker": _checker, "noise": _noise, "carpet": _carpet, "wood": _wood, "bricks": _bricks,
+    "plain": _plain, "checker": _checker, "noise": _noise,
+    "carpet": _carpet, "wood": _wood, "bricks": _bricks,
 }  # fmt: skip
 
 
 def _smooth(noise: Array, width: int, axes: tuple[int, ...] = (0, 1)) -> Array:
-    """Returns a running mean over `width` pixels, around the tile's edges too, with unit deviation."""
+    """Returns a running mean over `width` pixels, across the tile's edges too, of unit deviation."""
     for axis in axes:
         noise = np.mean([np.roll(noise, shift, axis) for shift in range(width)], axis=0)
     return np.asarray(noise / noise.std())

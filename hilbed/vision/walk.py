@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from math import atan2, hypot
 from typing import NamedTuple
 
@@ -26,7 +27,7 @@ class Walk(NamedTuple):
         """Returns x, y (m) and the heading (rad) at t."""
         back = () if self.closed else tuple(self.points[-2:0:-1])
         loop = (*self.points, *back, self.points[0])
-        legs = [(a, b, hypot(b[0] - a[0], b[1] - a[1])) for a, b in zip(loop, loop[1:], strict=False)]
+        legs = [(a, b, hypot(b[0] - a[0], b[1] - a[1])) for a, b in pairwise(loop)]
         left = self.speed * t / SECOND % sum(length for *_, length in legs)
         for (ax, ay), (bx, by), length in legs:
             if left <= length and length > 0.0:
