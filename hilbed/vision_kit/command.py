@@ -17,6 +17,7 @@ from hilbed.versions import versions
 from hilbed.vision.detectors import ForeignSpec, make_detector
 from hilbed.vision.seams import Closing, Detector
 from hilbed.vision_kit.archive import Archive, is_dataset
+from hilbed.vision_kit.feed import feed, is_feed
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.measures import judge, measure
 from hilbed.vision_kit.results import admit, keep
@@ -36,6 +37,8 @@ class Footage(NamedTuple):
 
 def vision(options: Namespace) -> int:
     """Scores a detector on a scenario or a dataset, and returns 0 where all criteria are met, else 1."""
+    if is_feed(options.scenario):
+        return feed(options)
     if options.sweep is not None:
         from hilbed.vision_kit.sweep_command import sweep
 

@@ -35,7 +35,7 @@ def write(sweep: Sweep, frames: Sequence[LabelledShot]) -> str:
     note = "a dot is a run, the line is the mean over the seeds; a cross is a run that broke off"
     cards = (
         page.card("From the camera to the wheels", drawn, note)
-        + page.card("What the camera sees", _shots(sweep, frames))
+        + page.card("What the camera sees", _shots(sweep, frames), "the first frame, with each value")
         + page.card("Numbers", _table(sweep), "mean over the seeds", wide=True)
     )
     title = f"{sweep.scenario} over {sweep.path}"
@@ -54,8 +54,8 @@ def figure(sweep: Sweep) -> str:
         one.plot(x, [_mean(values) for values in numbers], color=ink)
         unit = f"  [{effect.unit}]" if effect.unit else ""
         one.set_title(f"{effect.title}{unit}", loc="left", fontsize=9.5, color=style.STAND_IN["muted"], pad=3)
-        one.set_ylim(bottom=0)
-        one.margins(y=0.12)
+        highest = max((value for values in numbers for value in values if isfinite(value)), default=1.0)
+        one.set_ylim(0, 1.15 * highest or 1.0)
         _crosses(one, x, sweep.variants)
     axes[-1].set_xticks(x, labels)
     axes[-1].set_xlabel(sweep.path)

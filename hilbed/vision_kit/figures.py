@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import isfinite, pi
+from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -96,28 +96,50 @@ def _columns(axes: Axes, bins: _Bins, count: Array) -> None:
     axes.patch.set_visible(False)
 
 
-def errors(trial: Trial, beacons: Sequence[BeaconSpec]) -> str | None:
-    """Returns the azimuth's error over distance and over azimuth, with mean and spread in each bin."""
+def over_distance(trial: Trial, beacons: Sequence[BeaconSpec]) -> str | None:
+    """Returns the azimuth's error over distance, with mean and spread in each bin."""
+    return _errors(trial, beacons, lambda one: one.distance, "distance  [m]")
+
+
+def over_azimuth(trial: Trial, beacons: Sequence[BeaconSpec]) -> str | None:
+    """Returns the azimuth's error over the azimuth, left of the image on the left."""
+    return _errors(trial, beacons, lambda one: -degrees(one.azimuth), "right of the camera's axis  [°]")
+
+
+def _errors(
+    trial: Trial, beacons: Sequence[BeaconSpec], over: Callable[[Sighting], float], label: str
+) -> str | None:
     found = [one for one in trial.sightings if one.found]
     if not found:
         return None
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(style.WIDTH, 4.2), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharey=True)
+    figure, (axes,) = style.sheet(1, 2.5)
     error = MDEG * np.array([one.error for one in found])
+    colours = [style.beacon_colour(str(beacons[one.beacon].colour), 0.8) for one in found]
+    _spread(axes, np.array([over(one) for one in found]), error, colours)
     limit = 1.15 * float(np.percentile(np.abs(error), 99)) or 1.0
-    colours = [style.beacon_colour(beacons[one.beacon].colour, 0.8) for one in found]
-    _spread(upper, np.array([one.distance for one in found]), error, colours)
-    upper.set_xlabel("distance  [m]")
-    _spread(lower, np.degrees([one.azimuth for one in found]), error, colours)
-    lower.set_xlabel("azimuth in the camera's frame  [°], left positive")
-    lower.invert_xaxis()
-    for axes in (upper, lower):
-        axes.set_ylim(-limit, limit)
-        axes.set_ylabel("error  [mdeg]")
-    style.legend(upper, 2.0)
-    return style.svg(figure, "azimuth errors over distance and azimuth")
+    axes.set_ylim(-limit, limit)
+    axes.set_xlabel(label)
+    axes.set_ylabel("error  [mdeg]")
+    style.legend(axes, 2.0)
+    return style.svg(figure, f"azimuth errors over {label.partition('  ')[0]}")
+
+
+def pixels(trial: Trial) -> str | None:
+    """Returns how the azimuth's error is spread in pixels."""
+    error = np.array([one.error_px for one in trial.sightings if one.found])
+    error = error[np.isfinite(error)]
+    if not error.size:
+        return None
+    figure, (axes,) = style.sheet(1, 2.5)
+    limit = 1.15 * float(np.percentile(np.abs(error), 99)) or 0.01
+    bins = np.linspace(-limit, limit, 51).tolist()
+    axes.hist(np.clip(error, -limit, limit), bins, color=_COLOUR["left"], alpha=0.55)
+    axes.axvline(float(error.mean()), color=_COLOUR["ink"], label=f"mean {error.mean():+.2g} px")
+    axes.set_xlim(-limit, limit)
+    axes.set_ylabel("azimuths")
+    axes.set_xlabel(f"error  [px], standard deviation {error.std():.2g}")
+    style.legend(axes, 2.0)
+    return style.svg(figure, "azimuth errors in pixels")
 
 
 def _spread(axes: Axes, x: Array, error: Array, colours: Sequence[str]) -> None:

@@ -14,8 +14,15 @@ from hilbed.vision_kit.studio import Subject
 from hilbed.vision_kit.trial import Trial
 
 _SHEET = """
-.shots.strips { grid-template-columns: minmax(0, 1fr); gap: 12px; }
+.metrics th { white-space: nowrap; }
+.shots.strips { grid-template-columns: minmax(0, 1fr); gap: 14px; }
+.strip { display: flex; gap: 10px; align-items: stretch; }
+.strip svg:first-child { flex: 1 1 0; min-width: 0; }
+.strip svg + svg { flex: 0 0 auto; width: 13%; }
 .shots line.true, .shots line.found { mix-blend-mode: normal; stroke-dasharray: none; stroke-width: 1; }
+.strip svg + svg line { stroke-width: .4; }
+.strip svg + svg text { display: none; }
+.shots image { image-rendering: pixelated; }
 .shots line.true { stroke: #00a03c; } .shots line.found { stroke: #e11e32; }
 .shots text.true { fill: #2fd56f; } .shots text.found { fill: #ff6b78; } .shots text { font-size: 11px; }
 """
@@ -77,15 +84,17 @@ def _numbers(verdict: Mapping[str, Any]) -> str:
 
 def _figures(subject: Subject, trial: Trial) -> str:
     titles = ("Found, by distance", "Found, by what is visible", "Found, by light")
-    cards = [
+    found = [
         page.card(title, figures.rates(trial, axis), "grey: how many beacons")
         for title, axis in zip(titles, figures.AXES, strict=True)
     ]
     return "".join(
         [
-            page.card("Error of the azimuth", figures.errors(trial, subject.beacons)),
-            *cards,
+            page.card("Error of the azimuth, by distance", figures.over_distance(trial, subject.beacons)),
+            page.card("Error of the azimuth, by direction", figures.over_azimuth(trial, subject.beacons)),
+            page.card("Error of the azimuth, in pixels", figures.pixels(trial)),
             page.card("Is the stated standard deviation right?", figures.normalised(trial)),
+            *found,
             page.card("Time of a frame", figures.times(trial)),
             page.card("Wrong identities", _identities(trial)),
             page.card("Frames without an answer", _failures(trial)),
@@ -111,6 +120,6 @@ def _failures(trial: Trial) -> str | None:
 
 def _pictures(trial: Trial) -> str:
     shown = "".join(pictures.figure(picture, trial.rules) for picture in trial.worst)
-    note = "green from above: true axis and beacon; red from below: what was found"
+    note = "green from above: true axis and beacon; red from below: what was found; right: a close-up"
     body = f'<div class="shots strips">{shown}</div>' if shown else None
     return page.card("Worst frames", body, note, wide=True)

@@ -17,7 +17,7 @@ from hilbed.vision_kit.dataset import png
 from hilbed.vision_kit.matching import Matched, Sighting
 from hilbed.vision_kit.trial import Picture, Rules
 
-MARGIN = 24  # pixels on each side of what a close-up shows
+SIDE = 48  # pixels of a close-up
 GREEN, RED = (0, 160, 60), (225, 30, 50)
 
 
@@ -27,13 +27,35 @@ def figure(picture: Picture, rules: Rules) -> str:
     height, width = image.shape[:2]
     marks = "".join(_truth(beacon, height) for beacon in picture.labelled.truth.beacons if beacon.box)
     marks += "".join(_found(one, height) for one in picture.found)
-    data = (
-        f'<image width="{width}" height="{height}" href="data:image/png;base64,{page.base64(png(image))}"/>'
-    )
+    data = f"data:image/png;base64,{page.base64(png(image))}"
+    drawing = f'<image width="{width}" height="{height}" href="{data}"/>{marks}'
     whole = f'<svg role="img" aria-label="frame {picture.frame}" viewBox="0 0 {width} {height}">'
+    close = f'<svg role="img" aria-label="close-up" viewBox="{_close_up(picture, rules)}">'
     text = "; ".join(troubles(picture.matched, rules)) or "nothing wrong"
     caption = f"<b>frame {picture.frame}</b> {escape(text)}"
-    return f"<figure>{whole}{data}{marks}</svg><figcaption>{caption}</figcaption></figure>"
+    strip = f'<div class="strip">{whole}{drawing}</svg>{close}{drawing}</svg></div>'
+    return f"<figure>{strip}<figcaption>{caption}</figcaption></figure>"
+
+
+def _close_up(picture: Picture, rules: Rules) -> str:
+    """Returns the part of a frame that holds the worst of it, as a view box: left, top, width, height."""
+    shot, beacons = picture.labelled.shot, picture.labelled.truth.beacons
+    height, width = shot.image.shape[:2]
+    side = min(SIDE, height)
+    matched = picture.matched
+    column, row = 0.5 * width, 0.5 * height
+    if matched.strays and not any(one.mistaken for one in matched.sightings):
+        column = picture.found[matched.strays[0].detection].column
+    elif matched.sightings:
+        worst = beacons[max(matched.sightings, key=lambda one: _trouble(one, rules)).beacon]
+        column, row = worst.column, worst.row
+    left = min(max(column - side / 2, 0), width - side) if isfinite(column) else 0
+    top = min(max(row - side / 2, 0), height - side) if isfinite(row) else 0
+    return f"{left:.1f} {top:.1f} {side} {side}"
+
+
+def _trouble(one: Sighting, rules: Rules) -> tuple[bool, bool, float]:
+    return one.mistaken, rules.due(one) and not one.found, abs(one.error_px) if one.found else 0.0
 
 
 def _truth(beacon: BeaconTruth, height: int) -> str:
