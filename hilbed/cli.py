@@ -118,8 +118,11 @@ def _parser() -> argparse.ArgumentParser:
 
     vision = _command(commands, "vision", _vision, "score a detector on rendered frames, or on a dataset")
     vision.add_argument(
-        "scenario", metavar="SCENARIO|DATASET", help="a scenario, or a folder of hilbed frames"
-    )
+        "scenario", metavar="SCENARIO|DATASET|FRAMES",
+        help="a scenario, a folder of hilbed frames; or frames without truth, of which the detections are "
+        "printed: a folder of images, a video, a camera's index or URL, a run folder",
+    )  # fmt: skip
+    _add_frames(vision)
     _add_settings(vision)
     _add_detector(vision)
     vision.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
@@ -176,6 +179,18 @@ def _add_settings(parser: _Parser) -> None:
 def _add_detector(parser: _Parser) -> None:
     text = "of every camera: a kind, package.module:Class, file.py or file.py:Class"
     parser.add_argument("--detector", metavar="DETECTOR", help=text)
+
+
+def _add_frames(parser: _Parser) -> None:
+    """Adds what is to be known of frames that are not rendered."""
+    frames = parser.add_argument_group("frames without truth")
+    frames.add_argument("--like", metavar="SCENARIO", help="take detector, beacons and camera of a scenario")
+    frames.add_argument("--calibration", type=Path, metavar="FILE", help="of the camera, as OpenCV writes it")
+    frames.add_argument("--fov-deg", type=float, metavar="DEGREES", help="of a camera without calibration")
+    frames.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="of images without stamps (30)")
+    frames.add_argument(
+        "--timeout", type=float, default=5.0, metavar="S", help="for each frame of a live camera (5)"
+    )
 
 
 def _add_bus(parser: _Parser) -> None:

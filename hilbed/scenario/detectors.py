@@ -24,10 +24,10 @@ def give(data: Mapping[str, Any], detector: str) -> None:
     for name in cameras:
         block = data["sensors"][name]
         block = {"kind": block} if isinstance(block, str) else block
-        data["sensors"][name] = {**block, "detector": _given(detector, block.get("detector"))}
+        data["sensors"][name] = {**block, "detector": given(detector, block.get("detector"))}
 
 
-def _given(detector: str, before: Any) -> Any:
+def given(detector: str, before: Any) -> Any:
     """Returns the detector's block: deadline and options of a foreign one stay."""
     if detector in KINDS:
         return detector

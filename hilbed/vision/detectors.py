@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BeforeValidator, Field
 
 from hilbed.problems import nearest, shorten
-from hilbed.scene import BeaconSpec
+from hilbed.scene import COLOURS, BeaconSpec
 from hilbed.spec import Positive, Spec
 from hilbed.vision.code import Code, parse
 from hilbed.vision.lens import Lens
@@ -70,6 +71,7 @@ def _word(value: Any) -> Any:
     return {**rest, "kind": "foreign", "code": kind}
 
 
+Beacons: TypeAlias = Sequence[BeaconSpec] | None
 AnyDetector: TypeAlias = ColourSpec | MarkersSpec | ForeignSpec
 DetectorSpec: TypeAlias = Annotated[AnyDetector, Field(discriminator="kind"), BeforeValidator(_word)]
 """`detector: colour`, `detector: file.py:Class` or a block with its kind."""
@@ -95,33 +97,36 @@ _MARKS: dict[str, Callable[[int, BeaconSpec], object]] = {
 
 
 def make_detector(
-    spec: AnyDetector, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool = False
+    spec: AnyDetector, lens: Lens, beacons: Beacons, anonymous: bool = False
 ) -> Detector:
-    """Returns the detector that a scenario describes; anonymous: it does not tell beacons apart.
+    """Returns the detector that a scenario describes.
 
-    Raises ScenarioError where foreign code cannot be used.
+    beacons: None where it is not known what there is; then a beacon's index is the number of its colour in
+    `COLOURS`, or of its marker. anonymous: it does not tell beacons apart. Raises ScenarioError where foreign code cannot be used.
     """
     return _MAKERS[spec.kind](spec, lens, beacons, anonymous)
 
 
-def _colour(_: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) -> Detector:
+def _colour(_: Any, lens: Lens, beacons: Beacons, anonymous: bool) -> Detector:
     from hilbed.vision.detect import ColourDetector
 
+    if beacons is None:
+        beacons = [BeaconSpec.model_validate({"at": (0.0, 0.0), "colour": colour}) for colour in COLOURS]
     return ColourDetector(lens, beacons, anonymous)
 
 
-def _markers(spec: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) -> Detector:
+def _markers(spec: Any, lens: Lens, beacons: Beacons, anonymous: bool) -> Detector:
     from hilbed.vision.markers import MarkerDetector
 
     return MarkerDetector(spec, lens, beacons, anonymous)
 
 
-def _foreign(spec: Any, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool) -> Detector:
+def _foreign(spec: Any, lens: Lens, beacons: Beacons, anonymous: bool) -> Detector:
     from hilbed.vision.foreign import ForeignDetector
 
-    return ForeignDetector(spec, lens, len(beacons), anonymous)
+    return ForeignDetector(spec, lens, sys.maxsize if beacons is None else len(beacons), anonymous)
 
 
-_MAKERS: dict[str, Callable[[Any, Lens, Sequence[BeaconSpec], bool], Detector]] = {
+_MAKERS: dict[str, Callable[[Any, Lens, Beacons, bool], Detector]] = {
     "colour": _colour, "markers": _markers, "foreign": _foreign,
 }  # fmt: skip

@@ -30,7 +30,7 @@ class Marker(NamedTuple):
 
 
 class MarkerDetector:
-    """Finds the markers that the beacons carry; without beacons, every marker, whose number is the identity.
+    """Finds the markers that the beacons carry; where none are known, any, whose number is the identity.
 
     The corners are refined to a fraction of a pixel, and the diagonals meet in the marker's middle, however it
     is seen. On a board that is the beacon's axis. Of a box that shows two sides, their widths tell where
@@ -40,15 +40,15 @@ class MarkerDetector:
     """
 
     def __init__(
-        self, spec: MarkersSpec, lens: Lens, beacons: Sequence[BeaconSpec], anonymous: bool = False
+        self, spec: MarkersSpec, lens: Lens, beacons: Sequence[BeaconSpec] | None, anonymous: bool = False
     ) -> None:
         self._lens, self._std = lens, spec.std
         self._carriers: dict[tuple[str, int], list[int]] = defaultdict(list)
-        for k, beacon in enumerate(beacons):
+        for k, beacon in enumerate(beacons or ()):
             if beacon.marker is not None:
                 self._carriers[beacon.dictionary, beacon.marker].append(k)
         self._beacons, self._anonymous = beacons, anonymous
-        families = {name for name, _ in self._carriers} if beacons else {spec.dictionary}
+        families = {spec.dictionary} if beacons is None else {name for name, _ in self._carriers}
         self._finders = {name: finder(name) for name in sorted(families)}
 
     def detect(self, shot: Shot) -> list[Detection]:
@@ -64,14 +64,14 @@ class MarkerDetector:
 
     def _detections(self, family: str, alike: Sequence[Marker]) -> list[Detection]:
         """Returns what markers of one number show."""
-        if not self._beacons:
+        if self._beacons is None:
             return [self._detection(one, one.number, 0.0) for one in alike]
         carriers = self._carriers.get((family, alike[0].number), [])
         if not carriers:
             return []
         beacon = self._beacons[carriers[0]]
         if len(carriers) == 1 and len(alike) == 2 and beacon.shape == "box":
-            return [self._between(*alike, carriers[0])]
+            return [self._between(*alike, carriers[0], _PAIR * self._radius(beacon, alike[0]))]
         identity, radii = (carriers[0] if len(carriers) == 1 else None), _BESIDE[beacon.shape]
         return [self._detection(one, identity, radii * self._radius(beacon, one)) for one in alike]
 
@@ -81,13 +81,12 @@ class MarkerDetector:
         std = hypot(self._pixel(column, row) * self._std, beside)
         return Detection(float(azimuth), std, column, None if self._anonymous else beacon, row)
 
-    def _between(self, one: Marker, other: Marker, beacon: int) -> Detection:
+    def _between(self, one: Marker, other: Marker, beacon: int, beside: float) -> Detection:
         """Returns where the axis of a box is that shows two sides.
 
         A side's middle is as far beside the axis as the other side is wide, both for the same reason; heights
         tell how much nearer one is than the other.
         """
-        beside = _PAIR * self._radius(self._beacons[beacon], one)
         first, second = (self._detection(side, beacon, beside) for side in (one, other))
         nearer = (height(one) / height(other)) ** 2
         share = width(other) * nearer / (width(one) + width(other) * nearer)
