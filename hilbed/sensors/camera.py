@@ -9,12 +9,13 @@ from typing import Annotated, Literal, NamedTuple, Self
 from pydantic import Field, model_validator
 
 from hilbed.angles import wrap
+from hilbed.clock import nanos
 from hilbed.cost import Cost, perf_counter
 from hilbed.effects import Effects
 from hilbed.ports import Witness
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.delivery import Delivery, DeliverySpec
-from hilbed.sensors.exposure import still
+from hilbed.sensors.exposure import Exposure, Moment
 from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Setting, Ticket
 from hilbed.sensors.faults import misses, noisy, spurious
 from hilbed.sensors.imaging import ImagingSpec
@@ -74,13 +75,23 @@ class CameraSpec(ImagingSpec, DeliverySpec):
         return {"azimuth": 1}
 
 
-class UnderWay(NamedTuple):
-    """A frame under way: at a pan angle (rad, robot's frame), with a mean number of false detections."""
+class Opened(NamedTuple):
+    """A frame that is being exposed, its middle at t.
+
+    pan: then, rad, robot's frame; blind: it will show nothing; false: mean number of false detections.
+    """
 
     t: Nanos
     delivered: Nanos
     pan: float
+    blind: bool
     false: float
+
+
+class UnderWay(NamedTuple):
+    """A frame that has been exposed, and how to get it."""
+
+    frame: Opened
     ticket: Ticket
 
 
@@ -100,36 +111,54 @@ class Camera:
         self._names = names(spec, eye.beacons)
         self._pan = make_pan(spec.pan, self._names)
         self._delivery = Delivery(spec, rng)
+        self._half = nanos((spec.exposure + spec.readout) / 2.0)
+        self._moments: list[Moment] = []
+        self._opened: Opened | None = None
         self._under_way: UnderWay | None = None
         self.troubles = Troubles(spec.detector)
 
     @property
     def due(self) -> Nanos:
-        """When the next frame is to be exposed."""
-        return self._delivery.due
+        """When it is to be told where the robot is: as an exposure begins, in its middle, as it ends."""
+        if self._opened is not None:
+            return self._opened.t + self._half
+        return self._delivery.due if self._moments else max(0, self._delivery.due - self._half)
 
     def sample(self, truth: Truth) -> None:
-        """Exposes a frame at truth.t, unless the camera is blind, and sends its azimuths on their way."""
-        self.flush()
-        pan = self._pan.turn(truth.t)
-        delivered = self._delivery.expose(truth.t)
-        if self._effects.blind:
+        """Takes down where the robot is and exposes a frame, unless blind, once that is known to its end."""
+        if not self._moments:
+            self.flush()
+        self._moments.append(Moment(truth.t, truth.pose, self._pan.turn(truth.t)))
+        if self._opened is None and truth.t >= self._delivery.due:
+            self._opened = self._open(truth.t)
+        if self._opened is not None and truth.t >= self._opened.t + self._half:
+            self._expose(self._opened)
+
+    def _open(self, t: Nanos) -> Opened:
+        blind, false = self._effects.blind, self._spec.spurious + self._effects.spurious
+        return Opened(t, self._delivery.expose(t), self._moments[-1].pan, blind, false)
+
+    def _expose(self, frame: Opened) -> None:
+        """Sends the azimuths of a frame on their way."""
+        exposure = Exposure(frame.t, tuple(self._moments))
+        self._opened = None
+        self._moments.clear()
+        if frame.blind:
             self._pan.saw([])
-            return
-        false = self._spec.spurious + self._effects.spurious
-        ticket = self._eye.look(still(truth.t, truth.pose, pan))
-        self._under_way = UnderWay(truth.t, delivered, pan, false, ticket)
+        else:
+            self._under_way = UnderWay(frame, self._eye.look(exposure))
 
     def read(self, t: Nanos) -> list[Reading]:
         """Returns the azimuths delivered up to and including t since the last call, oldest first."""
-        if self._under_way is not None and self._under_way.delivered <= t:
+        if self._under_way is not None and self._under_way.frame.delivered <= t:
             self.flush()
         return self._delivery.read(t)
 
     def flush(self) -> None:
         """Takes the frame that is under way, if any, from the eye, and tells the witness; once at the end."""
         if self._under_way is not None:
-            frame, glimpse = self._under_way, self._under_way.ticket()
+            frame, ticket = self._under_way
+            glimpse = ticket()
             self._under_way = None
             self._develop(frame, glimpse)
 
@@ -138,10 +167,10 @@ class Camera:
         self._under_way = None
         self._eye.close()
 
-    def _develop(self, frame: UnderWay, glimpse: Glimpse) -> None:
+    def _develop(self, frame: Opened, glimpse: Glimpse) -> None:
         """Sends a frame's azimuths on their way, with all that goes wrong with them."""
         start = perf_counter()
-        t, delivered, pan, false, _ = frame
+        t, delivered, pan, _, false = frame
         self.troubles.note(t, glimpse.trouble)
         findings = self._faulty(glimpse.findings, false)
         self._pan.saw([finding.detection for finding in findings])

@@ -27,12 +27,12 @@ class Exposure(NamedTuple):
     moments: tuple[Moment, ...]
 
     def at(self, t: Nanos) -> Moment:
-        """Returns where things were at t: between moments in proportion, outside them as at the nearest."""
-        before = max((m for m in self.moments if m.t <= t), key=lambda m: m.t, default=self.moments[0])
-        after = min((m for m in self.moments if m.t >= t), key=lambda m: m.t, default=self.moments[-1])
-        if before.t == after.t or not before.t <= t <= after.t:
-            return before._replace(t=t)
-        return _between(before, after, t)
+        """Returns where things were at t, in proportion between moments and on as before beyond them."""
+        moments = self.moments
+        if len(moments) == 1 or t == moments[0].t:
+            return moments[0]._replace(t=t)
+        after = next((k for k in range(1, len(moments)) if moments[k].t >= t), len(moments) - 1)
+        return moments[after] if moments[after].t == t else _on_the_way(moments[after - 1], moments[after], t)
 
 
 def still(t: Nanos, pose: Pose, pan: float = 0.0) -> Exposure:
@@ -40,7 +40,7 @@ def still(t: Nanos, pose: Pose, pan: float = 0.0) -> Exposure:
     return Exposure(t, (Moment(t, pose, pan),))
 
 
-def _between(before: Moment, after: Moment, t: Nanos) -> Moment:
+def _on_the_way(before: Moment, after: Moment, t: Nanos) -> Moment:
     part = (t - before.t) / (after.t - before.t)
     (x, y, yaw), (x2, y2, yaw2) = before.pose, after.pose
     turned = wrap(yaw + part * remainder(yaw2 - yaw, tau))

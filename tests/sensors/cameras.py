@@ -56,11 +56,13 @@ class Ideal:
         self._half, self._beacons = 0.5 * spec.lens.fov, beacons
         self.eye = Viewpoint(0.0, 0.0, 0.0, 0.0)
         self.frames = 0
+        self.seen: list[Viewpoint] = []
 
     def render(self, view: Viewpoint, t: Nanos) -> Image:  # noqa: ARG002
         self.eye = view
         self.frames += 1
-        return np.zeros((16, 16, 3), np.uint8)
+        self.seen.append(view)
+        return np.zeros((64, 640, 3), np.uint8)
 
     def detect(self, shot: Shot) -> list[Detection]:  # noqa: ARG002
         x, y, _, yaw, *_ = self.eye
@@ -72,7 +74,7 @@ class Ideal:
         return sorted(seen, key=lambda detection: detection.column)
 
     def labels(self, view: Viewpoint, t: Nanos) -> Image:  # noqa: ARG002
-        return np.zeros((16, 16), np.uint8)
+        return np.zeros((64, 640), np.uint8)
 
     def close(self) -> None:
         pass
