@@ -14,6 +14,7 @@ from hilbed.types import ScenarioError
 from hilbed.vision.code import Code, moved, parse
 from hilbed.vision.detectors import KINDS, ForeignSpec
 
+
 def give(data: Mapping[str, Any], detector: str) -> None:
     """Lays `--detector` over every camera; a file is meant from the current folder. Raises ScenarioError."""
     sensors = data.get("sensors")

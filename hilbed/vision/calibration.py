@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import degrees
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,9 +20,9 @@ class Optics(NamedTuple):
     fov: float
 
     def lens(self, width: int, height: int, name: str) -> Lens:
-        """Returns the lens of images of so many pixels; raises ScenarioError where the calibration is of others.
+        """Returns the lens of images of so many pixels; name: of what has them.
 
-        name: of what has these images.
+        Raises ScenarioError where the calibration is of others.
         """
         known = self.calibration
         if known is None:
@@ -33,15 +32,11 @@ class Optics(NamedTuple):
             raise ScenarioError(f"the calibration does not fit: it is of images of {told}")
         return known
 
-    def __str__(self) -> str:
-        known = "a field of view of " + f"{degrees(self.fov):g}°" if self.calibration is None else "a calibration"
-        return f"{known}"
-
 
 def read_lens(path: Path) -> Lens:
-    """Returns the lens of a `cv2.FileStorage`: image_width, image_height, camera_matrix, distortion_coefficients.
+    """Returns the lens of a `cv2.FileStorage`.
 
-    Raises ScenarioError naming the file where it is no calibration, or one with more than k1 k2 p1 p2 k3.
+    Its names are image_width, image_height, camera_matrix and distortion_coefficients, those of OpenCV. Raises ScenarioError naming the file where it is no calibration, or one with more than k1 k2 p1 p2 k3.
     """
     storage = _opened(path)
     size = [_number(storage, name, path) for name in ("image_width", "image_height")]

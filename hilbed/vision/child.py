@@ -1,4 +1,4 @@
-"""The bench's end of the line to a foreign detector's process: frames in shared memory, JSON over a socket."""
+"""The bench's end of the line to a foreign detector: frames in shared memory, JSON over a socket."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class ChildLost(HilbedError):
 class Child:
     """A process that may do anything: it is waited for only so long, and killed with all that it started.
 
-    size: bytes of the shared memory; first: what it is told first, pickled. What it prints, on standard output
-    or error, is kept from its end (64 KiB). It ends with this process, also when that one is killed; Ctrl-C
+    size: bytes of the shared memory; first: what it is told first, pickled. Of what it prints, on standard
+    output or error, the last 64 KiB are kept. It ends with this process, also when that one is killed; Ctrl-C
     does not hit it. Raises ScenarioError where no process can be started.
     """
 
@@ -107,12 +107,13 @@ class Child:
     def _listen(self, until: float) -> None:
         """Waits for a piece of an answer; what is printed meanwhile is taken, so that no print blocks."""
         left = until - monotonic()
-        ready = select([self._socket, self._pipe], [], [], left)[0] if left > 0 else []
+        both: list[int] = [self._socket.fileno(), self._pipe]
+        ready = select(both, [], [], left)[0] if left > 0 else []
         if not ready:
             raise TimeoutError
         if self._pipe in ready:
             self._hear()
-        if self._socket in ready:
+        if self._socket.fileno() in ready:
             with suppress(ConnectionError):
                 piece = self._socket.recv(LONGEST)
                 self._received += piece

@@ -1,4 +1,4 @@
-"""Where a detector's code is, as a scenario names it: `package.module:Class`, `file.py` or `file.py:Class`."""
+"""Where a detector's code is: `package.module:Class`, `file.py` or `file.py:Class`."""
 
 from __future__ import annotations
 

@@ -96,13 +96,12 @@ _MARKS: dict[str, Callable[[int, BeaconSpec], object]] = {
 """By what each kind of detector tells beacons apart."""
 
 
-def make_detector(
-    spec: AnyDetector, lens: Lens, beacons: Beacons, anonymous: bool = False
-) -> Detector:
+def make_detector(spec: AnyDetector, lens: Lens, beacons: Beacons, anonymous: bool = False) -> Detector:
     """Returns the detector that a scenario describes.
 
     beacons: None where it is not known what there is; then a beacon's index is the number of its colour in
-    `COLOURS`, or of its marker. anonymous: it does not tell beacons apart. Raises ScenarioError where foreign code cannot be used.
+    `COLOURS`, or of its marker. anonymous: it does not tell beacons apart. Raises ScenarioError where foreign
+    code cannot be used.
     """
     return _MAKERS[spec.kind](spec, lens, beacons, anonymous)
 

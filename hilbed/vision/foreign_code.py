@@ -49,8 +49,8 @@ def find_class(code: Code) -> type:
 
 
 def _only(module: ModuleType, code: Code) -> type:
-    own = [one for one in vars(module).values() if isinstance(one, type) and one.__module__ == module.__name__]
-    found = [one for one in own if _detects(one)]
+    classes = [one for one in vars(module).values() if isinstance(one, type)]
+    found = [one for one in classes if one.__module__ == module.__name__ and _detects(one)]
     if len(found) == 1:
         return found[0]
     if not found:
@@ -69,7 +69,8 @@ def _module(code: Code) -> ModuleType:
     except ModuleNotFoundError as error:
         if not code.is_file and error.name and f"{code.place}.".startswith(f"{error.name}."):
             file = f"{code.place.rpartition('.')[2]}.py:{code.name}"
-            raise Refused(f"no module {error.name} is installed; a file is given by its path, {file}") from None
+            told = f"no module {error.name} is installed"
+            raise Refused(f"{told}; a file is given by its path, {file}") from None
         raise Refused(f"importing {code.place} failed: {blame(error)}") from None
     except BaseException as error:
         raise Refused(f"importing {code.place} failed: {blame(error)}") from None
@@ -92,7 +93,7 @@ def _given(options: Mapping[str, Any]) -> str:
 
 
 def blame(error: BaseException) -> str:
-    """Returns `file:line in function: what`; the place is the innermost that is not a library's, if any is."""
+    """Returns `file:line in function: what`, the innermost place that is not a library's, if any is."""
     if isinstance(error, SyntaxError) and error.filename:
         return f"{error.filename}:{error.lineno}: {type(error).__name__}: {error.msg}"
     frames = [one for one in traceback.extract_tb(error.__traceback__) if _foreign(one.filename)]

@@ -41,7 +41,7 @@ def decode(data: bytes, name: str) -> Image:
     return rgb(np.asarray(image), name)
 
 
-def rgb(image: np.ndarray, name: str) -> Image:  # type: ignore[type-arg]  # its type is what is judged
+def rgb(image: np.ndarray, name: str) -> Image:
     """Returns an image of OpenCV's (BGR or grey, 8 bits) as (H, W, 3) RGB; raises ScenarioError."""
     channels = 1 if image.ndim == 2 else image.shape[2]
     if image.dtype != np.uint8:

@@ -9,12 +9,11 @@ from pathlib import Path
 
 from hilbed.clock import SECOND
 from hilbed.types import Image, Nanos, ScenarioError
-from hilbed.vision.calibration import Optics, read_lens
+from hilbed.vision.calibration import Optics
 from hilbed.vision.image_file import SUFFIXES, read_image
 from hilbed.vision.lens import Lens
 from hilbed.vision.seams import Shot
 
-CALIBRATION = "calibration.yaml"
 STAMPS = ("frames.jsonl", "stamps.txt")
 """Who knows the times: of a run's frames, JSON lines with t (s) and file; of others, lines `seconds file`."""
 
@@ -25,9 +24,9 @@ Reader = Callable[[str], tuple[float, str]]
 class ImageFolder:
     """The images of a folder.
 
-    Frame k is of k / rate (Hz), or of the time that frames.jsonl or stamps.txt says. The folder's own
-    calibration.yaml goes before `optics`. Images are read when they are asked for. Raises ScenarioError, naming
-    the file, for what cannot be read, or does not have the size that the calibration or the first image has.
+    Frame k is of k / rate (Hz), or of the time that frames.jsonl or stamps.txt says. Images are read when they
+    are asked for. Raises ScenarioError, naming the file, for what cannot be read, or does not have the size
+    that the calibration or the first image has.
     """
 
     def __init__(self, folder: Path, optics: Optics, rate: float = 30.0) -> None:
@@ -36,10 +35,7 @@ class ImageFolder:
         self._files = sorted(path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES)
         if not self._files:
             raise ScenarioError(f"{folder}: there is no image in it ({', '.join(SUFFIXES)})")
-        if optics.calibration is None and (folder / CALIBRATION).is_file():
-            optics = optics._replace(calibration=read_lens(folder / CALIBRATION))
         height, width, _ = read_image(self._files[0]).shape
-        self.optics = optics
         self.lens: Lens = optics.lens(width, height, str(self._files[0]))
         self._stamps = _stamps(folder)
         self._period = SECOND / rate

@@ -43,7 +43,6 @@ class LiveCamera:
         self._news = Condition()
         self._newest: _Taken | None = None
         self._ended = self._closed = False
-        self.optics = optics
         Thread(target=self._watch, name=f"hilbed {self.name}", daemon=True).start()
         first = self._wait()
         if first is None:

@@ -23,7 +23,7 @@ _PAIR = 0.05
 
 
 class Marker(NamedTuple):
-    """A marker in an image: its number, and its corners (4, 2) in pixels from the upper left one clockwise."""
+    """A marker in an image: its number, and its corners (4, 2) in pixels, clockwise from the upper left."""
 
     number: int
     corners: Array
@@ -32,8 +32,8 @@ class Marker(NamedTuple):
 class MarkerDetector:
     """Finds the markers that the beacons carry; where none are known, any, whose number is the identity.
 
-    The corners are refined to a fraction of a pixel, and the diagonals meet in the marker's middle, however it
-    is seen. On a board that is the beacon's axis. Of a box that shows two sides, their widths tell where
+    The corners are refined to a fraction of a pixel, and the diagonals meet in the marker's middle, however
+    it is seen. On a board that is the beacon's axis. Of a box that shows two sides, their widths tell where
     between their middles the axis is; a side that is seen alone, and a cylinder's marker, lies beside the
     axis, unknown how far, which is part of the stated standard deviation. Markers that no beacon carries are
     left out.
@@ -71,7 +71,7 @@ class MarkerDetector:
             return []
         beacon = self._beacons[carriers[0]]
         if len(carriers) == 1 and len(alike) == 2 and beacon.shape == "box":
-            return [self._between(*alike, carriers[0], _PAIR * self._radius(beacon, alike[0]))]
+            return [self._between(alike, carriers[0], _PAIR * self._radius(beacon, alike[0]))]
         identity, radii = (carriers[0] if len(carriers) == 1 else None), _BESIDE[beacon.shape]
         return [self._detection(one, identity, radii * self._radius(beacon, one)) for one in alike]
 
@@ -81,13 +81,14 @@ class MarkerDetector:
         std = hypot(self._pixel(column, row) * self._std, beside)
         return Detection(float(azimuth), std, column, None if self._anonymous else beacon, row)
 
-    def _between(self, one: Marker, other: Marker, beacon: int, beside: float) -> Detection:
+    def _between(self, sides: Sequence[Marker], beacon: int, beside: float) -> Detection:
         """Returns where the axis of a box is that shows two sides.
 
         A side's middle is as far beside the axis as the other side is wide, both for the same reason; heights
         tell how much nearer one is than the other.
         """
-        first, second = (self._detection(side, beacon, beside) for side in (one, other))
+        one, other = sides
+        first, second = (self._detection(side, beacon, beside) for side in sides)
         nearer = (height(one) / height(other)) ** 2
         share = width(other) * nearer / (width(one) + width(other) * nearer)
         return first._replace(

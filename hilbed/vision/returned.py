@@ -45,7 +45,8 @@ def _fields(one: object) -> dict[str, Any]:
     if isinstance(one, dict):
         for key in one:
             if key not in _FIELDS:
-                raise ValueError(f"a detection has an unknown field {shorten(key)}{nearest(str(key), _FIELDS)}")
+                meant = nearest(str(key), _FIELDS)
+                raise ValueError(f"a detection has an unknown field {shorten(key)}{meant}")
         return one
     if isinstance(one, list | tuple) and len(one) <= len(_FIELDS):
         return dict(zip(_FIELDS, one, strict=False))

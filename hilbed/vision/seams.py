@@ -98,7 +98,7 @@ class Source(Protocol):
 
 
 class Viewpoint(NamedTuple):
-    """Where a camera is and looks: optical centre (m, map); yaw, pitch (down positive), roll (rad, REP-103)."""
+    """Where a camera is and looks: optical centre (m, map); yaw, pitch (down positive), roll (rad)."""
 
     x: float
     y: float
@@ -126,8 +126,8 @@ class BeaconTruth(NamedTuple):
     """Where one beacon truly is in a frame.
 
     beacon: index; azimuth, elevation: rad in the camera's frame (its axis at 0; as Detection.azimuth, tilt
-    taken out); body_azimuth, body_elevation: in the robot's frame, from the optical centre; distance: m to its
-    axis; visible: part (0…1) of its outline that the frame shows, 0 where it is outside or hidden; box:
+    taken out); body_azimuth, body_elevation: in the robot's frame, from the optical centre; distance: m to
+    its axis; visible: part (0…1) of its outline that the frame shows, 0 where it is outside or hidden; box:
     pixels (left, top, right, bottom) of what is visible, None where nothing is; column, row: pixels of the
     middle of its axis.
     """

@@ -34,7 +34,6 @@ class VideoFile:
             self.close()
             raise ScenarioError(f"{path}: is no video that can be read, or is cut off before its first frame")
         height, width, _ = first.shape
-        self.optics = optics
         try:
             self.lens: Lens = optics.lens(width, height, self.name)
         except ScenarioError:

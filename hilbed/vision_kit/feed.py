@@ -30,7 +30,7 @@ from hilbed.vision.live import LiveCamera
 from hilbed.vision.log_frames import LogFrames
 from hilbed.vision.seams import Closing, Detection, DetectionFailed, Detector, Shot, Source
 from hilbed.vision.video import VideoFile
-from hilbed.vision_kit.dataset import DATASET, TRUTH
+from hilbed.vision_kit.dataset import CALIBRATION, DATASET, TRUTH
 from hilbed.vision_kit.studio import Subject
 
 VIDEOS = (".avi", ".mp4", ".mkv", ".mov", ".webm", ".mjpg", ".mjpeg", ".ts")
@@ -39,7 +39,7 @@ FOV = 90.0
 
 
 def is_feed(name: str) -> bool:
-    """Tells whether a name is that of frames without truth: a device, URL, video, log, folder of images or run."""
+    """Tells whether a name means frames without truth: device, URL, video, log, folder of images or run."""
     path = Path(name)
     if path.is_dir():
         return not ((path / DATASET).exists() or (path / TRUTH).exists())
@@ -132,12 +132,14 @@ def _source(options: Namespace, subject: Subject | None) -> Source:
 
 
 def _optics(options: Namespace, subject: Subject | None) -> Optics:
-    """Returns what is known of the camera: a calibration, the scenario's lens, or a field of view."""
-    if options.calibration is not None:
-        return Optics(read_lens(options.calibration), 0.0)
+    """Returns what is known of the camera: a calibration, a field of view, or the scenario's lens."""
+    beside = Path(options.scenario) / CALIBRATION
+    known = options.calibration or (beside if beside.is_file() else None)
+    if known is not None:
+        return Optics(read_lens(known), 0.0)
     if options.fov_deg is None and subject is not None:
         return Optics(subject.lens, 0.0)
-    if options.fov_deg is None and not (Path(options.scenario) / "calibration.yaml").is_file():
+    if options.fov_deg is None:
         print(
             f"no calibration: azimuths are those of a field of view of {FOV:g}°; --calibration, --fov-deg",
             file=sys.stderr,
