@@ -10,7 +10,7 @@ from hilbed.plant.encoder import EncoderSpec
 from hilbed.plant.gear import GEARS, Gear
 from hilbed.plant.motor import MOTORS, Motor
 from hilbed.plant.supply import SupplySpec
-from hilbed.scene import BeaconSpec
+from hilbed.scene import BeaconSpec, SceneryBlock, ScenerySpec
 
 FIRMWARE_TICK = 0.001
 """s; the control period that the loops in the drives' firmware are written for."""
@@ -25,6 +25,7 @@ class SimulatedSpec(BulletSpec):
     encoder: EncoderSpec = EncoderSpec()
     supply: SupplySpec = SupplySpec()
     beacons: list[BeaconSpec] = []
+    scenery: SceneryBlock = ScenerySpec()
 
     @field_validator("tick")
     @classmethod

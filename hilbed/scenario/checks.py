@@ -21,7 +21,7 @@ from hilbed.plant.chopper import Switched, periods
 from hilbed.plant.urdf import meshes
 from hilbed.problems import Problem, nearest
 from hilbed.robots import RobotSpec
-from hilbed.scenario import detectors, files, matches, sensing
+from hilbed.scenario import detectors, files, matches, sensing, surroundings
 from hilbed.scenario.bodies import body_of
 from hilbed.sensors import SensorSpec
 from hilbed.types import ScenarioError
@@ -253,5 +253,5 @@ def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems
 CHECKS: tuple[Callable[..., Problems], ...] = (
     _periods, _ticks, _nodes, _joined, _beacons, _start, _path,
     _files, _body, _recording, _guidance, _recorded, _disturbed, _bus_faults, _judged,
-    detectors.allowed, *sensing.CHECKS, *matches.CHECKS,
+    detectors.allowed, *sensing.CHECKS, *matches.CHECKS, *surroundings.CHECKS,
 )  # fmt: skip

@@ -1,8 +1,9 @@
 """What stands in the arena: beacons, and all that a camera sees besides."""
 
-from hilbed.scene.beacons import BeaconSpec, FlashSpec
+from hilbed.scene.beacons import MOST_BEACONS, BeaconSpec, FlashSpec
 from hilbed.scene.colours import COLOURS, Colour
 from hilbed.scene.scenery import (
+    Corner,
     FloorSpec,
     LightSpec,
     ObjectSpec,
@@ -13,6 +14,6 @@ from hilbed.scene.scenery import (
 )
 
 __all__ = [
-    "COLOURS", "BeaconSpec", "Colour", "FlashSpec", "FloorSpec", "LightSpec", "ObjectSpec", "RandomSpec",
-    "SceneryBlock", "ScenerySpec", "WallsSpec",
+    "COLOURS", "MOST_BEACONS", "BeaconSpec", "Colour", "Corner", "FlashSpec", "FloorSpec", "LightSpec",
+    "ObjectSpec", "RandomSpec", "SceneryBlock", "ScenerySpec", "WallsSpec",
 ]  # fmt: skip

@@ -16,6 +16,9 @@ DICTIONARIES = {
     "APRILTAG_16h5": 30, "APRILTAG_25h9": 35, "APRILTAG_36h11": 587,
 }  # fmt: skip
 """Markers' dictionaries, with the number of markers that each has."""
+MOST_BEACONS = 255
+"""That can be told apart in a frame's labels."""
+
 MARKED = ("board", "box", "cylinder")
 
 

@@ -114,10 +114,12 @@ def viewpoint(mount: tuple[float, float, float], moment: Moment, lens: Lens) -> 
 
 def open_imager(spec: CameraSpec, setting: Setting, cost: Cost) -> Imager:
     """Returns the camera of a scenario; raises ScenarioError where the renderer does not work."""
+    from hilbed.scene.chance import seeded
     from hilbed.vision.render import BulletRenderer, Scenery
     from hilbed.vision.warp import Warped
 
-    scenery = Scenery(setting.beacons, spec.renderer == "egl", spec.ground, setting.scenery)
+    around = seeded(setting.scenery, setting.seed)
+    scenery = Scenery(setting.beacons, spec.renderer == "egl", spec.ground, around)
 
     def make(pinhole: Pinhole) -> Renderer:
         return BulletRenderer(pinhole, scenery, cost)
