@@ -21,8 +21,8 @@ _WIDTH, _HEIGHT, _CODE, _DATA = 2, 3, 4, 6  # fields of foxglove.RawImage
 class LogFrames:
     """Every frame that a run's camera exposed, at the time of its exposure.
 
-    lens: of the run's camera; offset: ns that the log's times are ahead of the run's. Raises ScenarioError where there is no log, no package `mcap` to read it, no
-    frame in it, or one of another size.
+    lens: of the run's camera; offset: ns that the log's times are ahead of the run's. Raises ScenarioError
+    where there is no log, no package `mcap` to read it, no frame in it, or one of another size.
     """
 
     def __init__(self, path: Path, lens: Lens, offset: Nanos) -> None:
