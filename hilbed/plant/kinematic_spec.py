@@ -17,10 +17,10 @@ from hilbed.types import Command, Rng
 class KinematicSpec(Spec):
     """How an ideal robot moves, and the noise on it, drawn once a control period and held over it.
 
-    beacons, scenery: what its sensors see; start_std (m, m, rad): how wrong the estimator is told the start,
-    standard deviations, drawn once; integrator, and its steps a period; command_noise: standard deviations added to
-    the command (m/s, and rad/s or rad of steering) before the robot's limits; twist_noise: σ_t (m per m) and
-    σ_D (rad per m).
+    beacons, scenery: what its sensors see; start_std (m, m, rad): how wrong the estimator is told the
+    start, standard deviations, drawn once; integrator, and its steps a period; command_noise: standard
+    deviations added to the command (m/s, and rad/s or rad of steering) before the robot's limits;
+    twist_noise: σ_t (m per m) and σ_D (rad per m).
     """
 
     kind: Literal["kinematic"] = "kinematic"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from hilbed.plant import PlantSpec, RecordedSpec
 from hilbed.problems import Problem
-from hilbed.scene import MOST_BEACONS, Corner, Corner
+from hilbed.scene import MOST_BEACONS, Corner
 from hilbed.sensors import CameraSpec, SensorSpec
 
 Problems = Iterator[Problem]
