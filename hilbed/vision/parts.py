@@ -83,7 +83,7 @@ def _beacon_mesh(spec: BeaconSpec) -> Mesh:
             return meshes.marked_box(radius, low, height)
         case "cylinder" if marked:
             return meshes.marked_cylinder(radius, low, height)
-    half = meshes.HALF_CONE
+    half = meshes.HALF_CONE if spec.shape == "cone" else meshes.ROUND // 2
     return meshes.frustum(radius, spec.upper_radius, height, 2 * half, half)
 
 
