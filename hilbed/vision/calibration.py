@@ -36,8 +36,8 @@ class Optics(NamedTuple):
 def read_lens(path: Path) -> Lens:
     """Returns the lens of a `cv2.FileStorage`.
 
-    Its names are image_width, image_height, camera_matrix and distortion_coefficients, those of OpenCV. Raises
-    ScenarioError naming the file where it is no calibration, or one with more than k1 k2 p1 p2 k3.
+    Its names are image_width, image_height, camera_matrix and distortion_coefficients, those of OpenCV.
+    Raises ScenarioError naming the file where it is no calibration, or one with more than k1 k2 p1 p2 k3.
     """
     storage = _opened(path)
     size = [_number(storage, name, path) for name in ("image_width", "image_height")]

@@ -25,8 +25,8 @@ class ImageFolder:
     """The images of a folder.
 
     Frame k is of k / rate (Hz), or of the time that frames.jsonl or stamps.txt says. Images are read when
-    they are asked for. Raises ScenarioError, naming the file, for what cannot be read, or does not have the size
-    that the calibration or the first image has.
+    they are asked for. Raises ScenarioError, naming the file, for what cannot be read, or does not have the
+    size that the calibration or the first image has.
     """
 
     def __init__(self, folder: Path, optics: Optics, rate: float = 30.0) -> None:
