@@ -40,7 +40,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if marker is None:
         return
     if DEGRADATION not in metafunc.fixturenames:
-        raise pytest.UsageError(
+        raise pytest.Collector.CollectError(
             f"{metafunc.definition.nodeid}: {DEGRADED} is for tests with hilbed_frame, hilbed_camera or "
             "hilbed_dataset"
         )
@@ -104,7 +104,6 @@ def _asked(request: pytest.FixtureRequest) -> Mapping[str, Any]:
     given = {} if marker is None else marker.kwargs
     unknown = ", ".join(sorted(set(given) - set(defaults)))
     if unknown or (marker is not None and marker.args):
-        pytest.fail(
-            f"marker {SCENE} knows {', '.join(defaults)} by name, not {unknown or marker.args}", False
-        )
+        wrong = unknown or "values without a name"
+        pytest.fail(f"marker {SCENE} takes {', '.join(defaults)} by name, not {wrong}", pytrace=False)
     return {**defaults, **given}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,10 @@ from hilbed.types import Image, ScenarioError
 from hilbed.vision.calibration import read_lens
 from hilbed.vision.image_file import read_image
 from hilbed.vision.lens import Lens
-from hilbed.vision.seams import Shot, ShotTruth
-from hilbed.vision_kit.dataset import CALIBRATION, DATASET, SCENARIO, TRUTH
+from hilbed.vision.seams import Shot
+from hilbed.vision_kit.dataset import CALIBRATION, DATASET, SCENARIO, TRUTH, read_truth
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.studio import Subject
-from hilbed.vision_kit.truth_lines import from_line
 
 
 def is_dataset(name: str) -> bool:
@@ -42,10 +42,11 @@ class Archive:
         loaded = load(str(folder / SCENARIO), settings, seed, detector)
         self.subject = Subject(loaded._replace(name=str(self.about.get("scenario", folder.name))))
         self._lens = _lens(folder / CALIBRATION, self.subject.lens)
-        self._truth = _truth(folder, int(self.about["frames"]))
+        self._count = int(self.about["frames"])
+        _check_whole(folder, self._count)
 
     def __len__(self) -> int:
-        return len(self._truth)
+        return self._count
 
     @property
     def lens(self) -> Lens:
@@ -53,9 +54,15 @@ class Archive:
 
     def shots(self, count: int | None = None) -> Iterator[LabelledShot]:
         """Yields the first frames, or all; raises ScenarioError for an image that cannot be used."""
-        for file, truth in self._truth[:count]:
-            image = _image(self.folder / file, self._lens)
+        for file, truth in islice(read_truth(self.folder), count):
+            image = _image(self._inside(file), self._lens)
             yield LabelledShot(Shot(image, truth.t, self._lens), truth)
+
+    def _inside(self, file: str) -> Path:
+        path = self.folder / file
+        if not path.resolve().is_relative_to(self.folder.resolve()):
+            raise ScenarioError(f"{self.folder / TRUTH}: {file} lies outside the dataset")
+        return path
 
 
 def _about(path: Path) -> dict[str, Any]:
@@ -72,28 +79,18 @@ def _about(path: Path) -> dict[str, Any]:
     return about
 
 
-def _truth(folder: Path, count: int) -> list[tuple[str, ShotTruth]]:
+def _check_whole(folder: Path, count: int) -> None:
     path = folder / TRUTH
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise ScenarioError(f"{path}: cannot be read: {error}") from None
-    if len(lines) != count:
+        with path.open("rb") as lines:
+            found = sum(1 for _ in lines)
+    except OSError as error:
+        raise ScenarioError(f"{path}: {error.strerror}") from None
+    if found != count:
         raise ScenarioError(
-            f"{path}: {len(lines)} of {count} frames; the hilbed frames command that began {folder} goes on "
+            f"{path}: {found} of {count} frames; the hilbed frames command that began {folder} goes on "
             "where it stopped"
         )
-    return [_line(path, number, line) for number, line in enumerate(lines, 1)]
-
-
-def _line(path: Path, number: int, line: str) -> tuple[str, ShotTruth]:
-    try:
-        file, truth = from_line(line)
-    except ValueError as error:
-        raise ScenarioError(f"{path}:{number}: {error}") from None
-    if not (path.parent / file).resolve().is_relative_to(path.parent.resolve()):
-        raise ScenarioError(f"{path}:{number}: {file} lies outside the dataset")
-    return file, truth
 
 
 def _lens(path: Path, expected: Lens) -> Lens:

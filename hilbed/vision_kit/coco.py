@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from hilbed.scene import BeaconSpec
@@ -11,35 +11,53 @@ from hilbed.vision.lens import Lens
 from hilbed.vision.seams import BeaconTruth, ShotTruth
 
 
-def coco(frames: Iterable[tuple[str, ShotTruth]], beacons: Sequence[BeaconSpec], lens: Lens) -> str:
-    """Returns the annotations of frames, each a file name and its truth, as JSON.
+def coco(
+    frames: Callable[[], Iterable[tuple[str, ShotTruth]]], beacons: Sequence[BeaconSpec], lens: Lens
+) -> Iterator[str]:
+    """Yields the annotations of frames, each a file name and its truth, as JSON, in pieces.
 
     Identifiers count from 1, so category k + 1 is the beacon of index k; a box is x, y, width, height in
     pixels from the image's upper left corner. Besides COCO's keys: azimuth (rad), distance (m), visible.
+    frames: gives them anew at each call, so that never all of them are held.
     """
-    images: list[dict[str, Any]] = []
-    annotations: list[dict[str, Any]] = []
-    for number, (file, truth) in enumerate(frames, 1):
-        images.append({"id": number, "file_name": file, "width": lens.width, "height": lens.height})
-        for beacon in truth.beacons:
-            if beacon.box is not None:
-                annotations.append(_annotation(len(annotations) + 1, number, beacon, beacon.box))
     categories = [
         {"id": k + 1, "name": f"{k} {beacon.colour}", "supercategory": "beacon"}
         for k, beacon in enumerate(beacons)
     ]
-    content = {"images": images, "annotations": annotations, "categories": categories}
-    return json.dumps(content, indent=1, allow_nan=False) + "\n"
+    yield '{"categories": ' + json.dumps(categories)
+    yield from _listed("images", _images(frames(), lens))
+    yield from _listed("annotations", _annotations(frames()))
+    yield "}\n"
 
 
-def _annotation(
-    number: int, image: int, beacon: BeaconTruth, box: tuple[int, int, int, int]
-) -> dict[str, Any]:
+def _listed(name: str, entries: Iterable[dict[str, Any]]) -> Iterator[str]:
+    """Yields a list, one entry a line."""
+    yield f',\n"{name}": ['
+    for k, entry in enumerate(entries):
+        yield (",\n" if k else "\n") + json.dumps(entry, allow_nan=False)
+    yield "\n]"
+
+
+def _images(frames: Iterable[tuple[str, ShotTruth]], lens: Lens) -> Iterator[dict[str, Any]]:
+    for number, (file, _) in enumerate(frames, 1):
+        yield {"id": number, "file_name": file, "width": lens.width, "height": lens.height}
+
+
+def _annotations(frames: Iterable[tuple[str, ShotTruth]]) -> Iterator[dict[str, Any]]:
+    count = 0
+    for number, (_, truth) in enumerate(frames, 1):
+        for beacon in truth.beacons:
+            if beacon.box is not None:
+                count += 1
+                yield _annotation((count, number), beacon, beacon.box)
+
+
+def _annotation(ids: tuple[int, int], beacon: BeaconTruth, box: tuple[int, int, int, int]) -> dict[str, Any]:
     left, top, right, bottom = box
     width, height = right - left + 1, bottom - top + 1
     return {
-        "id": number,
-        "image_id": image,
+        "id": ids[0],
+        "image_id": ids[1],
         "category_id": beacon.beacon + 1,
         "bbox": [left, top, width, height],
         "area": width * height,

@@ -7,7 +7,7 @@ So what is found counts as far as there are whole lines, and the rest is made as
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -21,6 +21,7 @@ from hilbed.scenario.load import Loaded, resolved
 from hilbed.scenario.own_files import pack
 from hilbed.types import Image, ScenarioError
 from hilbed.versions import versions
+from hilbed.vision.seams import ShotTruth
 from hilbed.vision_kit.calibration import calibration
 from hilbed.vision_kit.coco import coco
 from hilbed.vision_kit.labelled import LabelledShot
@@ -75,12 +76,29 @@ def write_dataset(plan: Plan, folder: Path, force: bool, tell: Callable[[int], N
                     lines.write(_keep(folder, k, taken))
                     lines.flush()
                     tell(k)
+            _write_coco(plan, folder)
         except OSError as error:
             raise RecordError(f"{error.filename or folder}: {error.strerror}") from error
-    text = (folder / TRUTH).read_text(encoding="utf-8")
-    frames = map(from_line, text.splitlines())
-    write_whole(folder / COCO, coco(frames, plan.subject.beacons, plan.subject.lens).encode())
     return there
+
+
+def _write_coco(plan: Plan, folder: Path) -> None:
+    """Writes the boxes of all frames; the file takes its place when it is whole."""
+    temporary = folder / f".{COCO}.tmp"
+    with temporary.open("w", encoding="utf-8") as file:
+        file.writelines(coco(lambda: read_truth(folder), plan.subject.beacons, plan.subject.lens))
+    temporary.replace(folder / COCO)
+
+
+def read_truth(folder: Path) -> Iterator[tuple[str, ShotTruth]]:
+    """Yields image file and truth of each frame of a dataset; raises ScenarioError naming a broken line."""
+    path = folder / TRUTH
+    with path.open(encoding="utf-8", errors="replace") as lines:
+        for number, line in enumerate(lines, 1):
+            try:
+                yield from_line(line)
+            except ValueError as error:
+                raise ScenarioError(f"{path}:{number}: {error}") from None
 
 
 def _admit(plan: Plan, folder: Path, force: bool) -> None:

@@ -21,8 +21,8 @@ class Sighting(NamedTuple):
     """A beacon of which a frame shows something, and what was found of it.
 
     frame: number; light: mean brightness of the frame, 0…1; cut: whether a side is cut off by the border of
-    the image; azimuth: the true one (rad); error: of the azimuth, rad, and in pixels; std: rad, as stated;
-    all NaN where it was not found; named: the identity that the detection states.
+    the image; azimuth: the true one (rad); error: of the azimuth, rad, and in pixels (left positive); std:
+    rad, as stated; all NaN where it was not found; named: the identity that the detection states.
     """
 
     frame: int
@@ -90,7 +90,7 @@ def _blank(frame: tuple[int, float], beacon: BeaconTruth, lens: Lens) -> Sightin
 
 
 def pixels(lens: Lens, beacon: BeaconTruth, error: float) -> float:
-    """Returns by how many columns an azimuth is off, at its beacon, for an error (rad)."""
+    """Returns how many columns an azimuth's error (rad) is at its beacon, both left positive."""
     right, _ = lens.pixel(beacon.azimuth - STEP, beacon.elevation)
     left, _ = lens.pixel(beacon.azimuth + STEP, beacon.elevation)
     return error * float(right - left) / (2 * STEP)
