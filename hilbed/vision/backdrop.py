@@ -28,7 +28,8 @@ class Backdrop:
 
     def __init__(self, lens: Pinhole, spec: ScenerySpec, beacons: Sequence[BeaconSpec]) -> None:
         self._lens = lens
-        self._sky = [round(255.0 * part) for part in spec.sky]
+        sky = [round(255.0 * part) for part in spec.sky]
+        self._sky = np.full((lens.height, lens.width, 3), sky, np.uint8)
         self._planes = planes(spec, beacons)
         self._corners = np.array([plane.corners for plane in self._planes]).reshape(-1, 4, 3)
         self._normals = np.array([np.cross(p.right, p.up) for p in self._planes]).reshape(-1, 3)
@@ -37,8 +38,7 @@ class Backdrop:
 
     def paint(self, view: Viewpoint) -> Image:
         """Returns (H, W, 3) RGB."""
-        image = np.empty((self._lens.height, self._lens.width, 3), np.uint8)
-        image[:] = self._sky
+        image = self._sky.copy()
         forward, left, up = np.array(axes(view))
         turn, eye = np.array([-left, -up, forward]), np.array([view.x, view.y, view.z])
         squares = ((self._corners - eye) @ turn.T).tolist()
