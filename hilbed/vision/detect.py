@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from math import atan
+from typing import NamedTuple
 
 import numpy as np
 
 from hilbed.scene import BeaconSpec
 from hilbed.types import Array
 from hilbed.vision.colour import Palette
+from hilbed.vision.edges import Edges, crisp, is_soft, soft
 from hilbed.vision.lens import Lens
+from hilbed.vision.rays import pixel_angle, rays, steepness
 from hilbed.vision.runs import Indices, Runs, bounds, find_runs, gather
 from hilbed.vision.seams import Detection, Shot
 
@@ -21,6 +25,23 @@ ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a str
 _ROUNDING = 0.066
 _UPRIGHT = 0.2
 _FINEST = 0.004  # pixels: the beacon's shape is not drawn any better
+_INTERPOLATED = 0.0065  # pixels: OpenCV distorts images with weights of 1/32 pixel
+_ROUNDED = 0.26  # pixels: how far (rms) edges that are rounded to whole pixels lie off a straight line
+
+
+class Fit(NamedTuple):
+    """What is known of one blob.
+
+    azimuth of its axis and standard deviation (rad), middle row, label, how far its edges lie off straight
+    lines (pixels), tangent of its middle's depression.
+    """
+
+    azimuth: float
+    std: float
+    row: float
+    label: float
+    rough: float
+    depression: float
 
 
 class ColourDetector:
@@ -40,37 +61,42 @@ class ColourDetector:
             None if anonymous or colours.count(colour) > 1 else colours.index(colour)
             for colour in self._palette.colours
         ]
-        edges = np.arange(lens.width - 1) + 0.5
-        self._angle = np.arctan((lens.cx - edges) / lens.fx)
-        self._cos = np.cos(self._angle)
-        self._drop = (np.arange(lens.height) - lens.cy) / lens.fx
-        self._slope = np.abs(self._drop)
-        self._focal = lens.fx
 
     def detect(self, shot: Shot) -> list[Detection]:
         """Returns what is seen, from left to right."""
         runs = find_runs(shot.image, self._palette)
         if runs.row.size == 0:
             return []
-        runs, blob = self._trim(*gather(runs))
+        runs, blob = gather(runs)
+        blurred = is_soft(shot.image, runs)
+        runs, blob = self._trim(runs, blob, blurred)
         if runs.row.size == 0:
             return []
-        return sorted(self._measure(runs, blob), key=lambda detection: detection.column)
+        edges = soft(shot.image, runs, blob) if blurred else crisp(runs)
+        found = [self._detection(fit) for fit in self._measure(runs, blob, edges) if fit.rough <= ROUGH]
+        return sorted(found, key=lambda detection: detection.column)
 
-    def _trim(self, runs: Runs, blob: Indices) -> tuple[Runs, Indices]:
-        """Leaves out rows that cross the rims of foot and top, and blobs with few rows or two runs in one."""
+    def _trim(self, runs: Runs, blob: Indices, blurred: bool) -> tuple[Runs, Indices]:
+        """Leaves out rows that cross the rims of foot and top, and blobs with few rows or two runs in one.
+
+        Where edges are soft, a rim takes a row more, which may show it in two pieces.
+        """
         row = runs.row
         first, count = bounds(blob)
         top, bottom = np.minimum.reduceat(row, first), np.maximum.reduceat(row, first)
         radius = 0.5 * np.maximum.reduceat(runs.right - runs.left, first)
-        highest, lowest = top + radius * self._slope[top], bottom - radius * self._slope[bottom]
-        highest[count > bottom - top + 1] = np.inf
+        middle = np.add.reduceat(0.5 * (runs.left + runs.right), first) / count
+        highest = top + radius * steepness(self._lens, middle, top) + blurred
+        lowest = bottom - radius * steepness(self._lens, middle, bottom) - blurred
         keep = (row >= highest[blob]) & (row <= lowest[blob])
+        rows = np.floor(lowest) - np.ceil(highest) if blurred else bottom - top
+        many = (np.add.reduceat(keep, first, dtype=np.intp) if blurred else count) > rows + 1
+        keep &= ~many[blob]
         keep &= np.add.reduceat(keep, first, dtype=np.intp)[blob] >= FEWEST_ROWS
         return runs.pick(keep), blob[keep]
 
-    def _measure(self, runs: Runs, blob: Indices) -> list[Detection]:
-        """Returns the azimuth of each blob's axis.
+    def _measure(self, runs: Runs, blob: Indices, edges: Edges) -> Iterator[Fit]:
+        """Yields the azimuth of each blob's axis.
 
         The edges of a cone obey azimuth = axis ± (a + b tan(depression)). In one row, left and right edge
         differ in depression where the beacon is off the middle of the image; b takes that out.
@@ -81,24 +107,47 @@ class ColourDetector:
         def mean(x: Array) -> Array:
             return np.asarray(np.add.reduceat(x, first) / count)
 
-        left, right, drop = self._angle[runs.left], self._angle[runs.right], self._drop[runs.row]
-        low, high = drop * self._cos[runs.left], drop * self._cos[runs.right]
+        left, right, low, high = rays(self._lens, edges, runs.row)
         middle, half, depth = 0.5 * (left + right), 0.5 * (left - right), 0.5 * (low + high)
-        depth -= mean(depth)[blob]
-        half -= mean(half)[blob]
+        width, depression = mean(half), mean(depth)
+        depth -= depression[blob]
+        half -= width[blob]
         taper = (mean(depth * half) / mean(depth * depth))[blob]
         middle -= 0.5 * taper * (low - high)
         azimuth = mean(middle)
 
-        pixel = np.cos(azimuth) ** 2 / self._focal
+        pixel = pixel_angle(self._lens, azimuth, mean(edges.right - edges.left), 2.0 * width)
         middle -= azimuth[blob]
         half -= taper * depth
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
-        steps = np.maximum.reduceat(runs.left, first) - np.minimum.reduceat(runs.left, first)
-        rounding = np.where(steps > 0, _ROUNDING / (1 + steps), _UPRIGHT)
-        std = pixel * np.maximum(rounding, _FINEST)
-        found = zip(azimuth.tolist(), std.tolist(), runs.label[first].tolist(), rough.tolist(), strict=True)
-        return [self._detection(*one) for *one, off in found if off <= ROUGH]
+        rounding = self._rounding(runs, first)
+        noise = mean(edges.noise**2)  # of an edge, pixels squared; the mean of two has half of it
+        if edges.blurred:
+            rounding *= np.minimum(1.0, np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED)
+        drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
+        std = pixel * np.sqrt(drawn + 0.5 * noise / count)
+        fits = zip(
+            azimuth, std, mean(runs.row.astype(float)), runs.label[first], rough, depression, strict=True
+        )
+        return (Fit(*map(float, fit)) for fit in fits)
 
-    def _detection(self, azimuth: float, std: float, label: int) -> Detection:
-        return Detection(azimuth, std, self._lens.column(azimuth), self._identity[label - 1])
+    def _rounding(self, runs: Runs, first: Indices) -> Array:
+        """Returns the error (pixels) of each blob's azimuth that comes of edges in whole pixels.
+
+        Where the camera is upright, both edges of a cone cross as many columns.
+        """
+        plain = self._lens.upright and not self._lens.distorted
+        left = _of_steps(runs.left, first)
+        return left if plain else np.hypot(left, _of_steps(runs.right, first)) / np.sqrt(2.0)
+
+    def _detection(self, fit: Fit) -> Detection:
+        lens, row = self._lens, fit.row
+        column = lens.column(fit.azimuth)
+        if not lens.upright or lens.distorted:
+            column, row = map(float, lens.pixel(fit.azimuth, -atan(fit.depression)))
+        return Detection(fit.azimuth, fit.std, column, self._identity[int(fit.label) - 1], row)
+
+
+def _of_steps(column: Indices, first: Indices) -> Array:
+    steps = np.maximum.reduceat(column, first) - np.minimum.reduceat(column, first)
+    return np.where(steps > 0, _ROUNDING / (1 + steps), _UPRIGHT)
