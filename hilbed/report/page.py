@@ -165,6 +165,16 @@ def counts(run: Run) -> str | None:
     return f"<table><tbody>{rows}</tbody></table>" if rows else None
 
 
+def detectors(run: Run) -> str | None:
+    """Returns what foreign detectors did wrong, None where they did nothing wrong."""
+    lines = [
+        f"{camera}: {line}"
+        for camera, found in (run.verdict.get("detectors") or {}).items()
+        for line in found
+    ]
+    return f"<pre>{escape(chr(10).join(lines))}</pre>" if lines else None
+
+
 def files(run: Run) -> str:
     """Returns links to what else is in the folder, and the fingerprints of the run."""
     names = [name for name in (MCAP, CAN, SIGNALS, VERDICT) if (run.folder / name).exists()]
@@ -172,6 +182,8 @@ def files(run: Run) -> str:
     prints = "<br>".join(
         f"{key} <code>{escape(str(run.verdict.get(key, '')))}</code>" for key in ("hash", "signals_hash")
     )
+    if run.verdict.get("reproducible") is False:
+        prints += "<br>not reproducible: the wall clock had a say in this run"
     return f'<p class="files">{links}</p><p class="files">{prints}</p>'
 
 

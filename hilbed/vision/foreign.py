@@ -27,12 +27,13 @@ class ForeignDetector:
     """Runs somebody else's detector in a child process; what it does wrong costs a frame, never the bench.
 
     beacons: how many there are; anonymous: identities are taken out. A child that hangs or has died is ended
-    and, with the next frame, started again. Raises ScenarioError where the code cannot be loaded or its class
+    and, with the next frame, started again. said: what it has printed for the last frame. Raises ScenarioError where the code cannot be loaded or its class
     cannot be made.
     """
 
     def __init__(self, spec: ForeignSpec, lens: Lens, beacons: int, anonymous: bool = False) -> None:
         self._spec, self._lens, self._beacons, self._anonymous = spec, lens, beacons, anonymous
+        self.said = ""
         self._left, self._left_in_all = RESTARTS, MOST_RESTARTS
         self._child: Child | None = self._start()
 
@@ -47,20 +48,25 @@ class ForeignDetector:
         np.copyto(child.image(shot.image.shape), shot.image)
         answer = self._ask(child, {"t": shot.t}, self._spec.deadline)
         self._left = RESTARTS
-        said = child.said()
-        if "raised" in answer:
-            raise failed("raised", str(answer["raised"]), said)
-        if "invalid" in answer:
-            raise failed("invalid", str(answer["invalid"]), said)
-        try:
-            found = checked(answer["rows"], self._lens, self._beacons)
-        except ValueError as error:
-            raise failed("invalid", str(error), said) from None
+        self.said = child.said()
+        found = self._judged(answer)
         return [one._replace(beacon=None) for one in found] if self._anonymous else found
 
     def close(self) -> None:
         """Ends the child."""
         self._end()
+
+    def _judged(self, answer: dict[str, Any]) -> list[Detection]:
+        if "raised" in answer:
+            raise failed("raised", str(answer["raised"]), self.said)
+        if "invalid" in answer:
+            raise failed("invalid", str(answer["invalid"]), self.said)
+        try:
+            return checked(answer["rows"], self._lens, self._beacons)
+        except ValueError as error:
+            raise failed("invalid", str(error), self.said) from None
+        except (KeyError, TypeError):
+            raise failed("died", "its process wrote garbage on the bench's line", self.said) from None
 
     def _start(self) -> Child:
         """Starts the child and waits until its detector is made; raises ScenarioError."""

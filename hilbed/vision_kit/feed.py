@@ -25,6 +25,7 @@ from hilbed.scene import BeaconSpec
 from hilbed.types import ScenarioError
 from hilbed.vision.calibration import Optics, read_lens
 from hilbed.vision.detectors import AnyDetector, DetectorSpec, make_detector
+from hilbed.vision.foreign import ForeignDetector
 from hilbed.vision.image_folder import ImageFolder
 from hilbed.vision.live import LiveCamera
 from hilbed.vision.log_frames import LogFrames
@@ -166,7 +167,10 @@ def _first(shots: Iterator[Shot], count: int | None) -> Iterator[Shot]:
 
 def _answer(detector: Detector, shot: Shot) -> dict[str, Any]:
     try:
-        return {"detections": [_plain(one) for one in detector.detect(shot)]}
+        found = [_plain(one) for one in detector.detect(shot)]
+        if isinstance(detector, ForeignDetector) and detector.said:
+            print(detector.said.rstrip(), file=sys.stderr)
+        return {"detections": found}
     except DetectionFailed as failed:
         trouble = failed.trouble
         print(f"{trouble.failure}: {trouble.text}\n{trouble.said}".rstrip(), file=sys.stderr)
