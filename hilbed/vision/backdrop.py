@@ -20,6 +20,7 @@ from hilbed.vision.planes import COARSER, Plane, planes
 from hilbed.vision.seams import Viewpoint
 
 _SMOOTH = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+_GRAZING = 1e-3  # m: an eye that is not farther from a plane does not see it
 _BITS = 4  # after the point, in the corners of OpenCV's polygons
 
 
@@ -44,7 +45,7 @@ class Backdrop:
         squares = ((self._corners - eye) @ turn.T).tolist()
         offsets = ((eye - self._corners[:, 0]) * self._normals).sum(axis=1).tolist()
         for plane, square, offset in zip(self._planes, squares, offsets, strict=True):
-            corners = clip(square, self._frustum) if offset > 0.0 else []
+            corners = clip(square, self._frustum) if offset > _GRAZING else []
             if corners and len(plane.tiles) == 1:
                 self._fill(image, corners, plane.tiles[0])
             elif corners:

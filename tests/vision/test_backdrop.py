@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import pi
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -51,6 +53,20 @@ def test_every_pixel_shows_what_its_ray_hits_first(pin: Pin) -> None:
         assert_array_equal(backdrop.paint(view)[sure], INDEX[kinds][sure])
         shown |= set(np.unique(kinds))
     assert shown == {0, 1, 2}
+
+
+@pytest.mark.parametrize("pattern", ["plain", "wood"])
+def test_any_view_gives_a_frame(pattern: str) -> None:
+    """Straight up and down, upside down, on the floor, in a corner, inside a wall, outside."""
+    surface = {"pattern": pattern, "tile": 0.05}
+    walls = WallsSpec.model_validate({**surface, "corner": (-4.0, -3.0), "opposite": (4.0, 3.0)})
+    backdrop = Backdrop(SKEWED, ScenerySpec(floor=FloorSpec.model_validate(surface), walls=walls), [])
+    places = [(0.0, 0.0, 0.3), (4.0, 3.0, 0.0), (4.0, 0.0, 0.3), (3.9999, 2.9999, 0.0001), (50.0, 0.0, 0.3)]
+    for x, y, z in places:
+        for pitch in (-pi / 2, -0.3, 0.0, 1e-9, pi / 2):
+            for roll in (0.0, pi):
+                image = backdrop.paint(Viewpoint(x, y, z, 0.7, pitch, roll))
+                assert (image.shape, image.dtype) == ((200, 320, 3), np.uint8)
 
 
 def test_the_horizon_of_a_floor_without_walls_is_level_with_the_camera() -> None:
