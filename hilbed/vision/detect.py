@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import atan
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +12,7 @@ from hilbed.types import Array
 from hilbed.vision.colour import Palette
 from hilbed.vision.edges import Edges, crisp, is_soft, soft
 from hilbed.vision.lens import Lens
-from hilbed.vision.rays import pixel_angle, rays, steepness
+from hilbed.vision.rays import pixel_angle, places, rays, steepness
 from hilbed.vision.runs import Indices, Runs, bounds, find_runs, gather
 from hilbed.vision.seams import Detection, Shot
 
@@ -32,16 +31,16 @@ _ROUNDED = 0.26  # pixels: how far (rms) edges that are rounded to whole pixels 
 class Fit(NamedTuple):
     """What is known of one blob.
 
-    azimuth of its axis and standard deviation (rad), middle row, label, how far its edges lie off straight
-    lines (pixels), tangent of its middle's depression.
+    azimuth of its axis and standard deviation (rad), column and row of its middle, label, how far its edges
+    lie off straight lines (pixels).
     """
 
     azimuth: float
     std: float
+    column: float
     row: float
     label: float
     rough: float
-    depression: float
 
 
 class ColourDetector:
@@ -126,9 +125,8 @@ class ColourDetector:
             rounding *= np.minimum(1.0, np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED)
         drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
         std = pixel * np.sqrt(drawn + 0.5 * noise / count)
-        fits = zip(
-            azimuth, std, mean(runs.row.astype(float)), runs.label[first], rough, depression, strict=True
-        )
+        column, row = places(self._lens, azimuth, depression, mean(runs.row.astype(float)))
+        fits = zip(azimuth, std, column, row, runs.label[first], rough, strict=True)
         return (Fit(*map(float, fit)) for fit in fits)
 
     def _rounding(self, runs: Runs, first: Indices) -> Array:
@@ -141,11 +139,7 @@ class ColourDetector:
         return left if plain else np.hypot(left, _of_steps(runs.right, first)) / np.sqrt(2.0)
 
     def _detection(self, fit: Fit) -> Detection:
-        lens, row = self._lens, fit.row
-        column = lens.column(fit.azimuth)
-        if not lens.upright or lens.distorted:
-            column, row = map(float, lens.pixel(fit.azimuth, -atan(fit.depression)))
-        return Detection(fit.azimuth, fit.std, column, self._identity[int(fit.label) - 1], row)
+        return Detection(fit.azimuth, fit.std, fit.column, self._identity[int(fit.label) - 1], fit.row)
 
 
 def _of_steps(column: Indices, first: Indices) -> Array:

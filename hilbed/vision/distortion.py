@@ -12,7 +12,7 @@ import numpy as np
 
 from hilbed.types import Array
 
-_CONVERGED = 1e-13
+_CONVERGED = 1e-11
 _MOST_STEPS = 30
 
 

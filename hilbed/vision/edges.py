@@ -34,7 +34,8 @@ class Edges(NamedTuple):
 
 def crisp(runs: Runs) -> Edges:
     """Returns edges halfway between the last pixel outside and the first one inside."""
-    return Edges(runs.left + 0.5, runs.right + 0.5, np.zeros(runs.row.size), False)
+    left, right = (np.asarray(column + 0.5, float) for column in (runs.left, runs.right))
+    return Edges(left, right, np.zeros(runs.row.size), False)
 
 
 def is_soft(image: Image, runs: Runs) -> bool:
@@ -48,7 +49,7 @@ def is_soft(image: Image, runs: Runs) -> bool:
         (inner[1], runs.right),
         (runs.right + 1, np.minimum(runs.right + 2, last)),
     ):
-        odd += np.count_nonzero((image[runs.row, a] != image[runs.row, b]).any(1))
+        odd += int(np.count_nonzero((image[runs.row, a] != image[runs.row, b]).any(1)))
     return odd > _SOFT * runs.row.size
 
 

@@ -24,9 +24,9 @@ class Rays(NamedTuple):
 def rays(lens: Lens, edges: Edges, row: Indices) -> Rays:
     """Returns which way both edges look."""
     if lens.upright and not lens.distorted:
-        drop = (row - lens.cy) / lens.fy
-        left: Array = np.arctan((lens.cx - edges.left) / lens.fx)
-        right: Array = np.arctan((lens.cx - edges.right) / lens.fx)
+        drop = np.asarray((row - lens.cy) / lens.fy, float)
+        left = np.asarray(np.arctan((lens.cx - edges.left) / lens.fx))
+        right = np.asarray(np.arctan((lens.cx - edges.right) / lens.fx))
         return Rays(left, right, drop * np.cos(left), drop * np.cos(right))
     azimuth, elevation = lens.direction(np.concatenate(edges[:2]), np.tile(row, 2).astype(float))
     depression = -np.tan(elevation)
@@ -46,3 +46,10 @@ def pixel_angle(lens: Lens, azimuth: Array, width: Array, angle: Array) -> Array
     if lens.upright and not lens.distorted:
         return np.asarray(np.cos(azimuth) ** 2 / lens.fx)
     return np.asarray(angle / width)
+
+
+def places(lens: Lens, azimuth: Array, depression: Array, row: Array) -> tuple[Array, Array]:
+    """Returns columns and rows of what is seen there; depression: its tangent; row: that of its middle."""
+    if lens.upright and not lens.distorted:
+        return np.array([lens.column(one) for one in azimuth.tolist()]), row
+    return lens.pixel(azimuth, -np.arctan(depression))
