@@ -26,7 +26,7 @@ MEASURES: dict[str, Measure] = {
     "precision": Measure("", "part of the detections that show a beacon, with no wrong identity"),
     "false_per_frame": Measure("", "detections that show no beacon, in each frame"),
     "wrong_identities": Measure("", "detections of one beacon that were taken for another"),
-    "azimuth_bias_mdeg": Measure("mdeg", "mean error of the azimuth"),
+    "azimuth_bias_mdeg": Measure("mdeg", "mean error of the azimuths found at `distance`"),
     "azimuth_std_mdeg": Measure("mdeg", "standard deviation of the azimuth's error"),
     "azimuth_rms_mdeg": Measure("mdeg", "root mean square of the azimuth's error"),
     "azimuth_max_mdeg": Measure("mdeg", "largest error of an azimuth"),
@@ -62,7 +62,8 @@ class VisionSpec(Spec):
     camera: name of the sensor, None for the only one; poses: along the reference, spread over the duration,
     or random ones from the seed, that see a beacon from `distance` (m, from and to); frames: how many;
     visible: a beacon has to be found if at least this part of it is seen, at this distance, and neither
-    side is cut off by the border of the image; criteria: limits by the name of a measure.
+    side is cut off by the border of the image; azimuths are judged at this distance, too; criteria: limits
+    by the name of a measure.
     """
 
     camera: str | None = None

@@ -18,7 +18,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _COLOURS = ("right", "left", "third", "estimate", "odometry")
-_SHEET = ".shots.strips { grid-template-columns: minmax(0, 1fr); gap: 12px; }"
+_SHEET = """
+.shots.strips { grid-template-columns: minmax(0, 1fr); gap: 12px; }
+.scroll th { white-space: nowrap; }
+"""
 
 
 def write(sweep: Sweep, frames: Sequence[LabelledShot]) -> str:
@@ -112,5 +115,6 @@ def _table(sweep: Sweep) -> str:
         )
         met = f"{variant.passed} of {len(variant.results)}"
         rows += f'<tr><th>{escape(variant.value)}</th>{cells}<td class="number">{met}</td></tr>'
-    head = f'<tr><th>{escape(sweep.path)}</th>{heads}<th class="number">passed</th></tr>'
+    key = sweep.path.rpartition(".")[2]
+    head = f'<tr><th>{escape(key)}</th>{heads}<th class="number">passed</th></tr>'
     return f'<div class="scroll"><table><tbody>{head}{rows}</tbody></table></div>'

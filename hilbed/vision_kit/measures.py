@@ -29,7 +29,7 @@ def measure(trial: Trial) -> dict[str, float]:
         "precision": _share(len(found) - wrong, detections),
         "false_per_frame": _share(len(trial.strays), trial.frames),
         "wrong_identities": float(wrong),
-        **_azimuth(found),
+        **_azimuth([one for one in found if trial.rules.reaches(one)]),
         **_times(trial.seconds),
     }
     assert list(values) == list(MEASURES), "each measure has a name that is known"

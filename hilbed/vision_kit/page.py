@@ -69,7 +69,7 @@ def _percent(value: float | None) -> float | None:
 
 
 def _shown(value: float | None) -> str:
-    return "none" if value is None else page.number(value)
+    return "none" if value is None else f"{value:.3g}"
 
 
 def _numbers(verdict: Mapping[str, Any]) -> str:

@@ -11,7 +11,7 @@ from hilbed.cost import Cost
 from hilbed.plant import KinematicSpec, RecordedSpec, SimulatedSpec
 from hilbed.problems import nearest
 from hilbed.scenario.load import Loaded
-from hilbed.scene import BeaconSpec, ScenerySpec
+from hilbed.scene import BeaconSpec
 from hilbed.sensors import CameraSpec
 from hilbed.sensors.exposure import Exposure, still
 from hilbed.sensors.eye import Setting
@@ -33,7 +33,7 @@ class Subject:
         self.vision = loaded.scenario.vision or VisionSpec()
         self.camera_name, self.camera = _camera(loaded)
         plant = _simulated(loaded)
-        self.beacons, self.scenery = tuple(plant.beacons), getattr(plant, "scenery", ScenerySpec())
+        self.beacons, self.scenery = tuple(plant.beacons), plant.scenery
 
     @property
     def lens(self) -> Lens:

@@ -40,6 +40,13 @@ def test_bias_and_spread_of_known_errors() -> None:
     assert values["normalised_rms"] == pytest.approx(np.hypot(1.0, 0.25), rel=0.02)
 
 
+def test_azimuths_are_judged_at_the_distance_alone() -> None:
+    near = sighting(found=True, error=1e-4, error_px=0.03, std=1e-4)
+    values = measure(trial([near, near._replace(distance=8.5, error=1e-2, error_px=3.0)]))
+    assert values["azimuth_bias_mdeg"] == pytest.approx(1000 * degrees(1e-4))
+    assert values["azimuth_bias_px"] == pytest.approx(0.03)
+
+
 def test_recall_counts_what_is_due_alone() -> None:
     ones = [
         sighting(found=True, error=0.0, error_px=0.0, std=1e-4),
