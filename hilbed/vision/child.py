@@ -1,4 +1,4 @@
-"""The bench's end of the line to a foreign detector: frames in shared memory, JSON over a socket."""
+"""The bench's end of the line to a process of its own: images in shared memory, JSON over a socket."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ import numpy as np
 
 from hilbed.types import HilbedError, Image, ScenarioError
 
-MODULE = "hilbed.vision.foreign_child"
 LONGEST = 1 << 20
 """bytes of an answer: what is longer is garbage."""
 
@@ -35,16 +34,16 @@ class ChildLost(HilbedError):
 class Child:
     """A process that may do anything: it is waited for only so long, and killed with all that it started.
 
-    size: bytes of the shared memory; first: what it is told first, pickled. Of what it prints, on standard
-    output or error, the last 64 KiB are kept. It ends with this process, also when that one is killed; Ctrl-C
-    does not hit it. Raises ScenarioError where no process can be started.
+    module: what runs there; size: bytes of the shared memory; first: what it is told first, pickled. Of what
+    it prints, on standard output or error, the last 64 KiB are kept. It ends with this process, also when
+    that one is killed; Ctrl-C does not hit it. Raises ScenarioError where no process can be started.
     """
 
-    def __init__(self, size: int, first: object) -> None:
+    def __init__(self, module: str, size: int, first: object) -> None:
         try:
-            self._process, self._socket, self._pipe, self._memory = _start(size)
+            self._process, self._socket, self._pipe, self._memory = _start(module, size)
         except OSError as error:
-            raise ScenarioError(f"the detector's process cannot be started: {error.strerror}") from error
+            raise ScenarioError(f"{module}: a process cannot be started: {error.strerror}") from error
         self._finalize = finalize(self, _end, self._process, self._socket, self._pipe)
         self._received = bytearray()
         self._said = bytearray()
@@ -139,7 +138,7 @@ class Child:
         return ChildLost(f"its process has ended with {status}")
 
 
-def _start(size: int) -> tuple[Popen[bytes], socket.socket, int, mmap]:
+def _start(module: str, size: int) -> tuple[Popen[bytes], socket.socket, int, mmap]:
     """Returns a new child, this end of the line to it, what it prints, and memory (bytes) that both see.
 
     It finds modules where this process does; its own hashes of strings are always the same.
@@ -153,7 +152,7 @@ def _start(size: int) -> tuple[Popen[bytes], socket.socket, int, mmap]:
         os.truncate(memory, size)
         shared = mmap(memory, 0)
         child = Popen(
-            [sys.executable, "-P", "-u", "-m", MODULE, *map(str, (theirs.fileno(), memory, os.getpid()))],
+            [sys.executable, "-P", "-u", "-m", module, *map(str, (theirs.fileno(), memory, os.getpid()))],
             env={**os.environ, "PYTHONPATH": path, "PYTHONHASHSEED": "0"},
             pass_fds=(theirs.fileno(), memory),
             process_group=0,

@@ -16,6 +16,7 @@ from hilbed.vision.lens import Lens
 from hilbed.vision.returned import checked
 from hilbed.vision.seams import Detection, DetectionFailed, Failure, Shot, Trouble
 
+_CHILD = "hilbed.vision.foreign_child"
 RESTARTS, MOST_RESTARTS = 3, 20
 """So many times in succession, without an answer in between, and in all, it is started again."""
 
@@ -27,8 +28,8 @@ class ForeignDetector:
     """Runs somebody else's detector in a child process; what it does wrong costs a frame, never the bench.
 
     beacons: how many there are; anonymous: identities are taken out. A child that hangs or has died is ended
-    and, with the next frame, started again. said: what it has printed for the last frame. Raises ScenarioError where the code cannot be loaded or its class
-    cannot be made.
+    and, with the next frame, started again. said: what it has printed for the last frame. Raises
+    ScenarioError where the code cannot be loaded or its class cannot be made.
     """
 
     def __init__(self, spec: ForeignSpec, lens: Lens, beacons: int, anonymous: bool = False) -> None:
@@ -71,7 +72,7 @@ class ForeignDetector:
     def _start(self) -> Child:
         """Starts the child and waits until its detector is made; raises ScenarioError."""
         spec, lens = self._spec, self._lens
-        child = Child(lens.height * lens.width * 3, (parse(spec.code), dict(spec.options), lens))
+        child = Child(_CHILD, lens.height * lens.width * 3, (parse(spec.code), dict(spec.options), lens))
         self._child = child
         try:
             answer = child.answer(spec.startup)

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from threading import Condition, Thread
-from time import monotonic, monotonic_ns
-from typing import NamedTuple
-
-import cv2
+from typing import Any, NamedTuple
 
 from hilbed.types import HilbedError, Image, Nanos, ScenarioError
 from hilbed.vision.calibration import Optics
-from hilbed.vision.image_file import rgb
-from hilbed.vision.lens import Lens
+from hilbed.vision.child import Child, ChildLost
+from hilbed.vision.lens import LARGEST, Lens
 from hilbed.vision.seams import Shot
-from hilbed.vision.video import be_quiet
 
 TIMEOUT = 5.0
 """s that a camera may take to open, and for each frame."""
+
+_STARTUP = 60.0  # s that the process itself may take
+_CHILD = "hilbed.vision.live_child"
 
 
 class CameraLost(HilbedError):
@@ -32,81 +30,60 @@ class _Taken(NamedTuple):
 class LiveCamera:
     """The newest frame of a camera, each time one is asked for; those that nobody had time for are left out.
 
-    Frames are stamped when they arrive, from the opening on. A thread waits for the camera, so that nobody
-    else has to: cv2.VideoCapture blocks. Raises ScenarioError where the camera does not open within `timeout`
-    s, CameraLost where no frame follows within it.
+    Frames are stamped when they arrive, from the opening on. A child process reads the camera, so that one
+    that blocks can be let go. Raises ScenarioError where the camera does not open within `timeout` s,
+    CameraLost where no frame follows within it.
     """
 
     def __init__(self, place: int | str, optics: Optics, timeout: float = TIMEOUT) -> None:
         self.name = f"camera {place}" if isinstance(place, int) else place
-        self._place, self._timeout, self._start = place, timeout, monotonic_ns()
-        self._news = Condition()
-        self._newest: _Taken | None = None
-        self._ended = self._closed = False
-        Thread(target=self._watch, name=f"hilbed {self.name}", daemon=True).start()
-        first = self._wait()
-        if first is None:
-            self.close()
-            told = "cannot be opened" if self._ended else f"gives no frame within {timeout:g} s"
-            raise ScenarioError(f"{self.name}: {told}")
-        height, width, _ = first.image.shape
+        self._timeout = timeout
+        self._child = Child(_CHILD, LARGEST * LARGEST * 3, (place, timeout))
         try:
+            self._answer(_STARTUP)
+            self._first = self._next()
+            if self._first is None:
+                raise ScenarioError(f"{self.name}: cannot be opened")
+            height, width, _ = self._first.image.shape
             self.lens: Lens = optics.lens(width, height, self.name)
+        except CameraLost as error:
+            self.close()
+            raise ScenarioError(str(error)) from None
         except ScenarioError:
             self.close()
             raise
-        self._newest = first
 
     def frames(self) -> Iterator[Shot]:
         """Yields frames until the stream ends; raises CameraLost where it only stops."""
-        while True:
-            taken = self._wait()
-            if taken is None and not self._ended:
-                raise CameraLost(f"{self.name}: no frame for {self._timeout:g} s")
-            if taken is None:
-                return
+        taken, self._first = self._first, None
+        while taken is not None:
             if taken.image.shape[:2] != (self.lens.height, self.lens.width):
                 raise CameraLost(f"{self.name}: has changed the size of its images")
             yield Shot(taken.image, taken.t, self.lens)
+            taken = self._next()
 
     def close(self) -> None:
-        """Lets the camera go, as soon as it lets go."""
-        self._closed = True
+        """Lets the camera go."""
+        self._child.close()
 
-    def _wait(self) -> _Taken | None:
-        """Returns the newest frame that nobody has had, None at the end or after the timeout."""
-        until = monotonic() + self._timeout
-        with self._news:
-            while self._newest is None and not self._ended:
-                if not self._news.wait(until - monotonic()):
-                    return None
-            taken, self._newest = self._newest, None
-        return taken
-
-    def _watch(self) -> None:
-        """Takes frames as they come; runs in a thread of its own until the camera ends or is closed."""
+    def _next(self) -> _Taken | None:
+        """Returns the newest frame that nobody has had, None at the end."""
         try:
-            capture = _open(self._place, self._timeout)
-            while not self._closed:
-                there, image = capture.read()
-                if not there:
-                    break
-                taken = _Taken(rgb(image, self.name), monotonic_ns() - self._start)
-                with self._news:
-                    self._newest = taken
-                    self._news.notify()
-            capture.release()
-        finally:
-            with self._news:
-                self._ended = True
-                self._news.notify()
+            self._child.send(b"\n")
+        except ChildLost as error:
+            raise CameraLost(f"{self.name}: {error}") from None
+        answer = self._answer(self._timeout)
+        if answer.get("end"):
+            raise CameraLost(f"{self.name}: {answer['end']}")
+        if "end" in answer:
+            return None
+        image = self._child.image(tuple(answer["shape"])).copy()
+        return _Taken(image, int(answer["t"]))
 
-
-def _open(place: int | str, timeout: float) -> cv2.VideoCapture:
-    """Opens a device or a stream; where it fails, reading gives nothing."""
-    be_quiet()
-    if isinstance(place, int):
-        return cv2.VideoCapture(place)
-    patience = round(1e3 * timeout)
-    limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, patience, cv2.CAP_PROP_READ_TIMEOUT_MSEC, patience]
-    return cv2.VideoCapture(place, cv2.CAP_FFMPEG, limits)
+    def _answer(self, patience: float) -> dict[str, Any]:
+        try:
+            return self._child.answer(patience)
+        except TimeoutError:
+            raise CameraLost(f"{self.name}: no frame for {patience:g} s") from None
+        except ChildLost as error:
+            raise CameraLost(f"{self.name}: {error}") from None

@@ -98,6 +98,8 @@ def _subject(options: Namespace) -> Subject | None:
 
 def _run_folder(name: str) -> Path | None:
     path = Path(name)
+    if path.suffix == ".mcap" and not path.is_file():
+        raise ScenarioError(f"there is no file {path}")
     folder = path.parent if path.suffix == ".mcap" else path
     is_run = path.suffix == ".mcap" or (path / MCAP).exists() or (path / VERDICT).exists()
     return folder if is_run else None

@@ -248,7 +248,7 @@ def test_frames_that_nobody_had_time_for_are_left_out() -> None:
 
 
 def test_a_stream_that_stalls_is_lost_after_its_timeout() -> None:
-    with camera(frames=5, stalls=True) as url:
+    with camera(frames=30, stalls=True) as url:
         source = LiveCamera(url, RIGHT_ANGLE, timeout=1.0)
         with pytest.raises(CameraLost, match=r"no frame for 1 s"):
             list(source.frames())
