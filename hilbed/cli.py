@@ -128,7 +128,8 @@ def _parser() -> argparse.ArgumentParser:
     vision.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
     vision.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
     vision.add_argument("--out", type=Path, metavar="DIR", help="folder of page and numbers (runs/vision-…)")
-    vision.add_argument("--sweep", metavar="PATH=V1,V2", help="run the scenario with each value")
+    vision.add_argument("--vary", metavar="PATH=V1,V2", help="frames with each value, in one score")
+    vision.add_argument("--sweep", metavar="PATH=V1,V2", help="whole runs with each value instead")
     vision.add_argument("--seeds", metavar="A..B", help="seeds of the runs of --sweep (the scenario's)")
     vision.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
     vision.add_argument("--force", action="store_true", help="replace what an earlier command has written")
@@ -187,7 +188,7 @@ def _add_frames(parser: _Parser) -> None:
     frames.add_argument("--like", metavar="SCENARIO", help="take detector, beacons and camera of a scenario")
     frames.add_argument("--calibration", type=Path, metavar="FILE", help="of the camera, as OpenCV writes it")
     frames.add_argument("--fov-deg", type=float, metavar="DEGREES", help="of a camera without calibration")
-    frames.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="of images without stamps (30)")
+    frames.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="of unstamped images (30)")
     frames.add_argument(
         "--timeout", type=float, default=5.0, metavar="S", help="for each frame of a live camera (5)"
     )

@@ -22,11 +22,12 @@ MOST_SEEDS = 100_000
 
 
 class Job(NamedTuple):
-    """One run of a sweep."""
+    """One run of a sweep; detector: as for `hilbed run`."""
 
     scenario: str
     settings: Settings
     seed: int
+    detector: str | None = None
 
 
 class Result(NamedTuple):
@@ -106,6 +107,15 @@ def _variants(settings: Sequence[str]) -> Iterator[Settings]:
     yield from product(*choices)
 
 
+def listed(option: str, text: str) -> tuple[str, list[str]]:
+    """Returns path and values of an option's `PATH=V1,V2`; raises ScenarioError."""
+    path, equals, values = text.partition("=")
+    found = split_values(values)
+    if not path or not equals or not all(found):
+        raise ScenarioError(f"{option} {text}: give PATH=V1,V2,…, such as sensors.camera.read_noise=0,0.02")
+    return path, found
+
+
 def split_values(text: str) -> list[str]:
     """Splits `V1,V2` at the commas outside brackets and braces."""
     values, depth = [""], 0
@@ -147,7 +157,7 @@ def run_job(job: Job) -> Result:
     """Runs one job without writing anything."""
     from hilbed.runner import perform
 
-    outcome = perform(load(job.scenario, [*job.settings, "record=none"], job.seed), None)
+    outcome = perform(load(job.scenario, [*job.settings, "record=none"], job.seed, job.detector), None)
     return Result(job, outcome.status, dict(outcome.verdict))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 from hilbed import yaml12
 from hilbed.console import end_progress, progress, quiet_pipe
 from hilbed.scenario.load import load, resolved
+from hilbed.sweep import listed
+from hilbed.types import ScenarioError
 from hilbed.versions import versions
 from hilbed.vision.detectors import ForeignSpec, make_detector
 from hilbed.vision.seams import Closing, Detector
@@ -22,7 +24,7 @@ from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.measures import judge, measure
 from hilbed.vision_kit.results import admit, keep
 from hilbed.vision_kit.studio import Studio, Subject
-from hilbed.vision_kit.trial import Rules, Trial, run_trial
+from hilbed.vision_kit.trial import Rules, Trial, joined, run_trial
 
 PAGE, VERDICT = "vision.html", "vision.json"
 
@@ -43,26 +45,62 @@ def vision(options: Namespace) -> int:
         from hilbed.vision_kit.sweep_command import sweep
 
         return sweep(options)
-    with footage(options) as (subject, total, shots):
-        folder: Path = options.out or Path("runs") / f"vision-{subject.name}-{subject.scenario.seed}"
-        admit(folder, VERDICT, options.force)
-        rules = Rules(subject.vision.visible, subject.vision.distance)
-        with opened_detector(subject) as detector:
-            try:
-                trial = run_trial(shots, detector, rules, lambda k: progress(f"frame {k + 1} of {total}"))
-            finally:
-                end_progress()
+    subject, parts = _score(options)
+    trial = joined(list(parts.values()))
     verdict = conclude(subject, trial)
+    if options.vary is not None:
+        verdict["varied"] = {setting: _finite(measure(part)) for setting, part in parts.items()}
+    folder = _folder(options, subject)
     _write(folder, subject, trial, verdict)
     with quiet_pipe():
         print(json.dumps(verdict, indent=2) if options.json else _table(verdict, folder))
     return 0 if verdict["passed"] else 1
 
 
+def _score(options: Namespace) -> tuple[Subject, dict[str, Trial]]:
+    """Returns the trial with each setting of `--vary`, and the subject as it is with the first."""
+    parts: dict[str, Trial] = {}
+    subjects: list[Subject] = []
+    for setting in _varied(options):
+        with footage(options, setting) as (subject, total, shots), opened_detector(subject) as detector:
+            if not subjects:
+                admit(_folder(options, subject), VERDICT, options.force)
+            subjects.append(subject)
+            rules, first = Rules(subject.vision.visible, subject.vision.distance), len(parts) * total
+            try:
+                parts[setting] = run_trial(shots, detector, rules, _teller(setting, first, total), first)
+            finally:
+                end_progress()
+    return subjects[0], parts
+
+
+def _varied(options: Namespace) -> list[str]:
+    """Returns the settings of `--vary`, all of which hold; an empty one without it."""
+    if options.vary is None:
+        return [""]
+    if is_dataset(options.scenario):
+        raise ScenarioError(f"--vary renders frames, and {options.scenario} has its own")
+    path, values = listed("--vary", options.vary)
+    found = [f"{path}={value}" for value in values]
+    for setting in found:
+        load(options.scenario, [*options.settings, setting], options.seed, options.detector)
+    return found
+
+
+def _teller(setting: str, first: int, total: int) -> Callable[[int], None]:
+    return lambda k: progress(f"{setting} frame {k - first + 1} of {total}".strip())
+
+
+def _folder(options: Namespace, subject: Subject) -> Path:
+    return options.out or Path("runs") / f"vision-{subject.name}-{subject.scenario.seed}"
+
+
 @contextmanager
-def footage(options: Namespace) -> Iterator[Footage]:
-    """Yields the frames of a dataset, or those rendered of a scenario."""
-    settings = list(options.settings)
+def footage(options: Namespace, setting: str) -> Iterator[Footage]:
+    """Yields the frames of a dataset, or those rendered of a scenario, with one more setting if there is."""
+    settings = [*options.settings, *([setting] if setting else [])]
+    if options.count is not None and options.count < 1:
+        raise ScenarioError(f"-n {options.count}: at least one frame is needed")
     if is_dataset(options.scenario):
         archive = Archive(Path(options.scenario), settings, options.seed, options.detector)
         total = min(options.count or len(archive), len(archive))
@@ -106,11 +144,15 @@ def conclude(subject: Subject, trial: Trial) -> dict[str, Any]:
         "passed": not reasons,
         "reason": "; ".join(reasons),
         "criteria": judged,
-        "measures": {name: value if isfinite(value) else None for name, value in values.items()},
+        "measures": _finite(values),
         "failed": {str(frame): why for frame, why in trial.failed.items()},
         "worst": [picture.frame for picture in trial.worst],
         "versions": versions(),
     }
+
+
+def _finite(values: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: value if isfinite(value) else None for name, value in values.items()}
 
 
 def _write(folder: Path, subject: Subject, trial: Trial, verdict: Mapping[str, Any]) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import nan
 from typing import Any, NamedTuple
 
-from hilbed.scenario.load import load
-from hilbed.sweep import Job, Result, check_alone, side_by_side, split_values
+from hilbed.scenario.load import Loaded, load
+from hilbed.sweep import Job, Result, check_alone, side_by_side
 from hilbed.types import ScenarioError
 
 
@@ -60,32 +60,39 @@ class Sweep(NamedTuple):
         return f"{self.path}={variant.value}"
 
 
-def parse(text: str) -> tuple[str, list[str]]:
-    """Returns path and values of `PATH=V1,V2`; raises ScenarioError."""
-    path, equals, values = text.partition("=")
-    found = split_values(values)
-    if not path or not equals or not all(found):
-        raise ScenarioError(f"--sweep {text}: give PATH=V1,V2,…, such as sensors.camera.height=32,64")
-    return path, found
+class Task(NamedTuple):
+    """What is to be run: a scenario with settings and perhaps a detector, over the values of a path."""
+
+    scenario: str
+    settings: Sequence[str]
+    detector: str | None
+    path: str
+    values: Sequence[str]
+
+    def load(self, value: str, seed: int | None = None) -> Loaded:
+        """Reads the scenario with one of the values; raises ScenarioError."""
+        return load(self.scenario, self.with_value(value), seed, self.detector)
+
+    def with_value(self, value: str) -> tuple[str, ...]:
+        return (*self.settings, f"{self.path}={value}")
 
 
-def run_sweep(
-    scenario: str, settings: Sequence[str], swept: str, seeds: Sequence[int], jobs: int | None
-) -> Sweep:
+def run_sweep(task: Task, seeds: Sequence[int], jobs: int | None) -> Sweep:
     """Runs a scenario with each value and seed; raises ScenarioError before the first run."""
     if jobs is not None and jobs < 1:
         raise ScenarioError(f"--jobs {jobs}: at least one process has to run")
-    path, values = parse(swept)
-    name = scenario
-    for value in values:
-        loaded = load(scenario, [*settings, f"{path}={value}"])
-        name = loaded.name
-        check_alone(loaded.scenario)
-    todo = [Job(scenario, (*settings, f"{path}={value}"), seed) for value in values for seed in seeds]
+    loaded = [task.load(value) for value in task.values]
+    for one in loaded:
+        check_alone(one.scenario)
+    todo = [
+        Job(task.scenario, task.with_value(value), seed, task.detector)
+        for value in task.values
+        for seed in seeds
+    ]
     results = side_by_side(todo, jobs)
     size = len(seeds)
-    variants = [Variant(value, results[k * size : (k + 1) * size]) for k, value in enumerate(values)]
-    return Sweep(name, path, variants)
+    variants = [Variant(value, results[k * size : (k + 1) * size]) for k, value in enumerate(task.values)]
+    return Sweep(loaded[0].name, task.path, variants)
 
 
 def content(sweep: Sweep) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from hilbed.vision_kit.studio import Subject
 from hilbed.vision_kit.trial import Trial
 
 _SHEET = """
-.metrics th { white-space: nowrap; }
+.metrics th, .scroll th { white-space: nowrap; }
 .shots.strips { grid-template-columns: minmax(0, 1fr); gap: 14px; }
 .strip { display: flex; gap: 10px; align-items: stretch; }
 .strip svg:first-child { flex: 1 1 0; min-width: 0; }
@@ -33,7 +33,7 @@ def write(subject: Subject, trial: Trial, verdict: Mapping[str, Any], scenario: 
     from hilbed.report import style
 
     with style.drawing():
-        cards = _figures(subject, trial)
+        cards = _figures(subject, trial, verdict)
     body = (
         _banner(verdict)
         + f'<div class="grid">{_numbers(verdict)}{cards}{_pictures(trial)}'
@@ -82,7 +82,7 @@ def _numbers(verdict: Mapping[str, Any]) -> str:
     return page.card("Criteria", page.criteria_table(verdict["criteria"])) + page.card("Measures", table)
 
 
-def _figures(subject: Subject, trial: Trial) -> str:
+def _figures(subject: Subject, trial: Trial, verdict: Mapping[str, Any]) -> str:
     titles = ("Found, by distance", "Found, by what is visible", "Found, by light")
     found = [
         page.card(title, figures.rates(trial, axis), "grey: how many beacons")
@@ -96,10 +96,31 @@ def _figures(subject: Subject, trial: Trial) -> str:
             page.card("Is the stated standard deviation right?", figures.normalised(trial)),
             *found,
             page.card("Time of a frame", figures.times(trial)),
+            page.card("By value", _varied(verdict), wide=True),
             page.card("Wrong identities", _identities(trial)),
             page.card("Frames without an answer", _failures(trial)),
         ]
     )
+
+
+_SHOWN = (
+    "recall", "precision", "azimuth_bias_mdeg", "azimuth_std_mdeg", "normalised_rms", "wrong_identities",
+    "time_p50_ms",
+)  # fmt: skip
+
+
+def _varied(verdict: Mapping[str, Any]) -> str | None:
+    """Returns the measures with each value of `--vary`; None without it."""
+    if "varied" not in verdict:
+        return None
+    head = "".join(f'<th class="number">{name}</th>' for name in _SHOWN)
+    rows = "".join(
+        f"<tr><th>{escape(setting)}</th>"
+        + "".join(f'<td class="number">{_shown(measures[name])}</td>' for name in _SHOWN)
+        + "</tr>"
+        for setting, measures in verdict["varied"].items()
+    )
+    return f'<div class="scroll"><table><tbody><tr><th></th>{head}</tr>{rows}</tbody></table></div>'
 
 
 def _identities(trial: Trial) -> str | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from heapq import nlargest
 from time import perf_counter
 from typing import NamedTuple
@@ -62,11 +62,18 @@ class Trial(NamedTuple):
 
 
 def run_trial(
-    shots: Iterable[LabelledShot], detector: Detector, rules: Rules, tell: Callable[[int], None]
+    shots: Iterable[LabelledShot],
+    detector: Detector,
+    rules: Rules,
+    tell: Callable[[int], None],
+    first: int = 0,
 ) -> Trial:
-    """Returns what a detector makes of shots; tell: is called with the number of each frame."""
+    """Returns what a detector makes of shots.
+
+    tell: is called with the number of each frame; first: number of the first one.
+    """
     trial = Trial(rules, [], [], [], {}, [])
-    for k, labelled in enumerate(shots):
+    for k, labelled in enumerate(shots, first):
         tell(k)
         start = perf_counter()
         try:
@@ -80,6 +87,18 @@ def run_trial(
         trial.strays.extend(picture.matched.strays)
         trial.worst[:] = nlargest(WORST, [*trial.worst, picture], key=lambda one: one.badness)
     return trial
+
+
+def joined(parts: Sequence[Trial]) -> Trial:
+    """Returns trials whose frames are numbered on as one; there has to be one at least."""
+    whole = Trial(parts[0].rules, [], [], [], {}, [])
+    for part in parts:
+        whole.sightings.extend(part.sightings)
+        whole.strays.extend(part.strays)
+        whole.seconds.extend(part.seconds)
+        whole.failed.update(part.failed)
+    pictures = [picture for part in parts for picture in part.worst]
+    return whole._replace(worst=nlargest(WORST, pictures, key=lambda one: one.badness))
 
 
 def _judge(k: int, labelled: LabelledShot, found: tuple[Detection, ...], rules: Rules) -> Picture:

@@ -124,13 +124,14 @@ def test_what_is_there_is_not_overwritten(done: Path, tmp_path: Path) -> None:
         ),
         (["vision/clean", "--set", "vision.camera=cam"], "there is no camera 'cam'; did you mean 'camera'?"),
         (["vision/claen"], "did you mean 'vision/clean'?"),
-        (["recorded/azimuth"], "camera"),
         (["bui2022/open-loop", "--set", "vision.poses=path"], "no camera among its sensors"),
         (["vision/clean", "--sweep", "sensors.camera.noise"], "give PATH=V1,V2"),
         (["vision/clean", "--sweep", "sensors.camera.noize=1,2"], "did you mean 'noise'?"),
         (["vision/clean", "--sweep", "sensors.camera.noise=1,2", "--seeds", "x"], "--seeds x"),
         (["vision/clean", "--sweep", "sensors.camera.noise=0", "--jobs", "0"], "at least one process"),
-        (["vision/clean", "-n", "0"], "vision.frames"),
+        (["vision/clean", "--vary", "sensors.camera.gain=1,"], "give PATH=V1,V2"),
+        (["vision/clean", "--vary", "sensors.camera.gain=1,0"], "sensors.camera.gain"),
+        (["vision/clean", "-n", "0"], "at least one frame"),
         (["vision/clean", "-n", "many"], "invalid int value"),
     ],
 )
@@ -157,6 +158,33 @@ def test_a_scenario_without_beacons_has_frames_and_no_recall(tmp_path: Path) -> 
     assert ended.status == 0, ended.err
     measures = json.loads(ended.out)["measures"]
     assert (measures["frames"], measures["beacons"], measures["recall"]) == (2, 0, None)
+
+
+def test_frames_with_several_values_are_one_score_from_dark_to_bright(tmp_path: Path) -> None:
+    ended = hilbed(
+        "vision", "vision/clean", *SETTINGS, *LAX, "-n", "4", "--json", "--out", tmp_path / "out",
+        "--vary", "sensors.camera.gain=0.01,1",
+    )  # fmt: skip
+    verdict = json.loads(ended.out)
+    dark, bright = verdict["varied"]["sensors.camera.gain=0.01"], verdict["varied"]["sensors.camera.gain=1"]
+    assert (dark["recall"], verdict["measures"]["frames"]) == (0.0, 8)
+    assert bright["recall"] > 0.5
+    assert verdict["measures"]["recall"] == pytest.approx(bright["recall"] / 2), "the same beacons in both"
+    assert {frame // 4 for frame in verdict["worst"]} == {0, 1}, "frames are numbered on"
+    page = Page((tmp_path / "out/vision.html").read_text())
+    assert "By value" in page.titles
+
+
+def test_a_sweep_takes_somebodys_detector(tmp_path: Path) -> None:
+    (tmp_path / "blind.py").write_text("class Blind:\n    def detect(self, shot):\n        return []\n")
+    ended = hilbed(
+        "vision", "vision/clean", *SETTINGS, "--set", "duration=1", "--set", "criteria={}", "--jobs", "1",
+        "--sweep", "sensors.camera.noise=0", "--detector", tmp_path / "blind.py", "--json",
+        "--out", tmp_path / "out",
+    )  # fmt: skip
+    assert ended.status == 0, ended.err
+    (run,) = json.loads(ended.out)["runs"]
+    assert not run["azimuth_count"]
 
 
 def test_a_sweep_shows_every_effect_in_one_figure(tmp_path: Path) -> None:
