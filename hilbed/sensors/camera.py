@@ -33,8 +33,8 @@ from hilbed.vision.truth import SPURIOUS
 class CameraSpec(ImagingSpec, DeliverySpec):
     """A camera that measures azimuths of beacons in rendered frames.
 
-    renderer: tiny (processor) or egl (at most 1024×768); ground: draw it, for pictures, at three times the
-    cost; mount: m, the optical centre on the pan axis in the robot's frame; detector: a kind, or somebody's
+    renderer: tiny (processor) or egl (at most 1024×768); ground: a grey floor where the scenery has none;
+    mount: m, the optical centre on the pan axis in the robot's frame; detector: a kind, or somebody's
     code; identity: colour or anonymous; noise: rad, standard deviation added to each azimuth; missed:
     probability for each detection; spurious: mean number of false azimuths a frame. What it takes to expose
     and to read out a frame is within latency and the time between frames.
