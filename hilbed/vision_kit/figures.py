@@ -58,7 +58,10 @@ def rates(trial: Trial, axis: Axis) -> str | None:
         ("precision", right, made, "left"),
     ):
         share = bins.share(bins.count(part, axis), bins.count(whole, axis))
-        axes.plot(bins.middles, 100 * share, "o-", markersize=3.5, color=_COLOUR[colour], label=name)
+        known = np.isfinite(share)
+        axes.plot(
+            bins.middles[known], 100 * share[known], "o-", markersize=3.5, color=_COLOUR[colour], label=name
+        )
     axes.set_ylim(-3, 103)
     axes.set_ylabel("%")
     axes.set_xlabel(axis.label)

@@ -54,7 +54,7 @@ def _banner(verdict: Mapping[str, Any]) -> str:
         ("a frame", measures["time_p50_ms"], "ms"),
     ]
     tiles = "".join(
-        f"<div><dt>{name}</dt><dd>{_shown(value)}<small> {unit}</small></dd></div>"
+        f"<div><dt>{name}</dt><dd>{_short(value)}<small> {unit}</small></dd></div>"
         for name, value, unit in facts
     )
     about = f"{verdict['detector']} on {int(measures['frames'])} frames, seed {verdict['seed']}"
@@ -69,6 +69,10 @@ def _percent(value: float | None) -> float | None:
 
 
 def _shown(value: float | None) -> str:
+    return "none" if value is None else page.number(value)
+
+
+def _short(value: float | None) -> str:
     return "none" if value is None else f"{value:.3g}"
 
 
