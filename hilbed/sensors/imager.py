@@ -15,11 +15,11 @@ from hilbed.scene import BeaconSpec
 from hilbed.sensors.exposure import Exposure, Moment
 from hilbed.sensors.eye import Setting
 from hilbed.types import Image, Nanos
-from hilbed.vision.chip import PERFECT, Chip, Light, develop
+from hilbed.vision.chip import PERFECT, Chip, blocks, develop
 from hilbed.vision.lens import Lens
 from hilbed.vision.opengl import Pinhole
 from hilbed.vision.seams import Renderer, Shot, ShotTruth, Viewpoint
-from hilbed.vision.shutter import Shutter, count, moments, shares
+from hilbed.vision.shutter import Shutter, collect, count, moments, shares
 from hilbed.vision.truth import beacons_truth
 
 if TYPE_CHECKING:
@@ -55,9 +55,12 @@ class Imager:
         film, images = self._film, self._images(exposure)
         if len(images) == 1 and film.chip == PERFECT:
             return Shot(images[0], exposure.t, self.lens)
-        light = self._light(images)
-        random = rng.stream(*film.stream, exposure.t)
-        return Shot(develop(light, film.chip, random), exposure.t, self.lens)
+        random = rng.stream(*film.stream, exposure.t) if film.chip.noisy else None
+        image = np.empty_like(images[0])
+        part = shares(film.shutter, len(images), self.lens.height)
+        for rows in blocks(self.lens.height, self.lens.width):
+            develop(collect(images, part, rows), rows.start, film.chip, random, image)
+        return Shot(image, exposure.t, self.lens)
 
     def truth(self, exposure: Exposure, beacons: Sequence[BeaconSpec]) -> ShotTruth:
         """Returns the truth of a frame, which costs another image."""
@@ -89,18 +92,6 @@ class Imager:
         turn = remainder(end.pose.yaw - begin.pose.yaw, tau) + end.pan - begin.pan
         way = hypot(end.pose.x - begin.pose.x, end.pose.y - begin.pose.y)
         return self.lens.fx * (abs(turn) + way / _NEAR)
-
-    def _light(self, images: list[Image]) -> Light:
-        """Returns what the rows collect of the images, (H, W, 3)."""
-        if len(images) == 1:
-            return images[0].astype(np.float32)
-        part = shares(self._film.shutter, len(images), self.lens.height).astype(np.float32)
-        light = np.zeros(images[0].shape, np.float32)
-        for image, share in zip(images, part, strict=True):
-            rows = share.nonzero()[0]
-            some = slice(int(rows[0]), int(rows[-1]) + 1) if rows.size else slice(0)
-            light[some] += image[some] * share[some, None, None]
-        return light
 
 
 def viewpoint(mount: tuple[float, float, float], moment: Moment, lens: Lens) -> Viewpoint:

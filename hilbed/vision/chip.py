@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ Light = npt.NDArray[np.float32]
 _STEPS = 16  # of the converter for a level of 8 bits: 12 bits
 _FULL = 256 * _STEPS
 _DRAWS = 1 << 16
+_BLOCK = 1 << 14  # pixels
 
 
 class Chip(NamedTuple):
@@ -33,20 +35,35 @@ class Chip(NamedTuple):
     gamma: float = 1.0
     bits: int = 8
 
+    @property
+    def noisy(self) -> bool:
+        return bool(self.shot_noise or self.read_noise)
+
 
 PERFECT = Chip()
 
 
-def develop(light: Light, chip: Chip, rng: Rng) -> Image:
-    """Returns the image (H, W, 3) that a chip makes of light, which is overwritten."""
+def blocks(height: int, width: int) -> Iterator[slice]:
+    """Yields the rows of an image in blocks small enough for the processor's cache."""
+    rows = max(1, _BLOCK // width)
+    for first in range(0, height, rows):
+        yield slice(first, min(first + rows, height))
+
+
+def develop(light: Light, first: int, chip: Chip, rng: Rng | None, image: Image) -> None:
+    """Writes into the image (H, W, 3) what a chip makes of the light (h, W, 3) on rows from `first` on.
+
+    The light is overwritten. rng: None where the chip adds no noise.
+    """
+    rows, (height, width, _) = slice(first, first + len(light)), image.shape
     if chip.vignetting:
-        light *= falloff(light.shape[1], light.shape[0], chip.vignetting)
-    if chip.shot_noise or chip.read_noise:
+        light *= falloff(width, height, chip.vignetting)[rows]
+    if chip.noisy and rng is not None:
         add_noise(light, chip, rng)
     light *= _STEPS
     light += 0.5
     np.clip(light, 0.0, _FULL - 1, out=light)
-    return levels(chip.gain, chip.gamma, chip.bits)[light.astype(np.uint16)]
+    levels(chip.gain, chip.gamma, chip.bits).take(light.astype(np.uint16), out=image[rows])
 
 
 def add_noise(light: Light, chip: Chip, rng: Rng) -> None:

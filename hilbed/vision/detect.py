@@ -12,7 +12,7 @@ from hilbed.types import Array
 from hilbed.vision.colour import Palette
 from hilbed.vision.edges import Edges, crisp, is_soft, soft
 from hilbed.vision.lens import Lens
-from hilbed.vision.rays import pixel_angle, places, rays, steepness
+from hilbed.vision.rays import leans, pixel_angle, places, rays, steepness
 from hilbed.vision.runs import Indices, Runs, bounds, find_runs, gather
 from hilbed.vision.seams import Detection, Shot
 
@@ -119,29 +119,46 @@ class ColourDetector:
         middle -= azimuth[blob]
         half -= taper * depth
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
-        rounding = self._rounding(runs, first)
         noise = mean(edges.noise**2)  # of an edge, pixels squared; the mean of two has half of it
-        if edges.blurred:
-            rounding *= np.minimum(1.0, np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED)
+        off = np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED
+        part = np.minimum(1.0, off) if edges.blurred else np.ones_like(off)
+        if self._lens.upright:
+            rounding = _of_steps(runs.left, first, part)
+        else:
+            top, bottom = np.minimum.reduceat(depth, first), np.maximum.reduceat(depth, first)
+            lean = leans(self._lens, azimuth, depression + top, depression + bottom)
+            narrows = taper[first] * (bottom - top) / pixel
+            rounding = _of_crossings(np.abs(lean - narrows), np.abs(lean + narrows), part)
         drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
         std = pixel * np.sqrt(drawn + 0.5 * noise / count)
         column, row = places(self._lens, azimuth, depression, mean(runs.row.astype(float)))
         fits = zip(azimuth, std, column, row, runs.label[first], rough, strict=True)
         return (Fit(*map(float, fit)) for fit in fits)
 
-    def _rounding(self, runs: Runs, first: Indices) -> Array:
-        """Returns the error (pixels) of each blob's azimuth that comes of edges in whole pixels.
-
-        Where the camera is upright, both edges of a cone cross as many columns.
-        """
-        plain = self._lens.upright and not self._lens.distorted
-        left = _of_steps(runs.left, first)
-        return left if plain else np.hypot(left, _of_steps(runs.right, first)) / np.sqrt(2.0)
-
     def _detection(self, fit: Fit) -> Detection:
         return Detection(fit.azimuth, fit.std, fit.column, self._identity[int(fit.label) - 1], fit.row)
 
 
-def _of_steps(column: Indices, first: Indices) -> Array:
+def _of_steps(column: Indices, first: Indices, part: Array) -> Array:
+    """Returns the error (pixels) of each blob's azimuth from rounded edges that cross as many columns.
+
+    part: of the rounding that is left where edges are soft, as they show where they cross columns.
+    """
     steps = np.maximum.reduceat(column, first) - np.minimum.reduceat(column, first)
-    return np.where(steps > 0, _ROUNDING / (1 + steps), _UPRIGHT)
+    return np.where(steps > 0, _ROUNDING / (1 + steps) * part, _UPRIGHT)
+
+
+def _of_crossings(left: Array, right: Array, part: Array) -> Array:
+    """Returns the same for edges that cross these numbers of columns.
+
+    The mean of a sawtooth of ±1/2 over x ≥ 1 of its periods has a variance of f² (1 − f)² / (12 x²), f being
+    the part of the last period: 1 / (360 x²) for any f. Within the first period it is (1 − x)² / 12.
+    """
+
+    def one(x: Array) -> Array:
+        return np.maximum(
+            np.maximum(1.0 - x, 0.0) / np.sqrt(12.0), part / np.sqrt(360.0) / np.maximum(x, 1.0)
+        )
+
+    both: Array = np.hypot(one(left), one(right))
+    return 0.5 * both

@@ -53,3 +53,9 @@ def places(lens: Lens, azimuth: Array, depression: Array, row: Array) -> tuple[A
     if lens.upright and not lens.distorted:
         return np.array([lens.column(one) for one in azimuth.tolist()]), row
     return lens.pixel(azimuth, -np.arctan(depression))
+
+
+def leans(lens: Lens, azimuth: Array, low: Array, high: Array) -> Array:
+    """Returns how many columns lie between points of an upright axis; low, high: depressions' tangents."""
+    column = lens.pixel(np.tile(azimuth, 2), -np.arctan(np.concatenate((low, high))))[0]
+    return np.asarray(column[: azimuth.size] - column[azimuth.size :])

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
 
-from hilbed.types import Array
+from hilbed.types import Array, Image
+from hilbed.vision.chip import Light
 
 MOST = 32
 """Images at most for one exposure."""
+_STILL = 0.25  # pixels
+_INSTANT = 1e-9  # s, the resolution of time
 
 
 class Shutter(NamedTuple):
@@ -31,9 +36,9 @@ class Shutter(NamedTuple):
 def count(motion: float) -> int:
     """Returns how many images make an exposure in which the scene moves by `motion` (pixels).
 
-    One a pixel and one besides, so that edges are ramps and not stairs; one alone where nothing moves.
+    They are less than a pixel apart, so that edges become ramps; a quarter of a pixel needs no second one.
     """
-    return 1 if motion < 1e-3 else int(min(MOST, 2 + motion))
+    return 1 if motion < _STILL else int(min(MOST, max(2, ceil(motion + 0.5))))
 
 
 def moments(shutter: Shutter, images: int) -> Array:
@@ -50,10 +55,19 @@ def shares(shutter: Shutter, images: int, rows: int) -> Array:
     """
     late = shutter.readout * ((np.arange(rows) + 0.5) / rows - 0.5)
     times = moments(shutter, images)[:, None]
-    if not shutter.exposure:
+    if shutter.exposure < _INSTANT:
         return np.asarray(np.argmin(np.abs(times - late), 0) == np.arange(images)[:, None], float)
     half = 0.5 * shutter.span / images
     begin = np.maximum(times - half, late - 0.5 * shutter.exposure)
     end = np.minimum(times + half, late + 0.5 * shutter.exposure)
     part = np.maximum(end - begin, 0.0)
     return np.asarray(part / part.sum(0))
+
+
+def collect(images: Sequence[Image], part: Array, rows: slice) -> Light:
+    """Returns the light (h, W, 3) on some rows; part (images, H): what each image has in each row."""
+    light = np.zeros(images[0][rows].shape, np.float32)
+    for image, share in zip(images, part[:, rows].astype(np.float32), strict=True):
+        if share.any():
+            light += image[rows] * share[:, None, None]
+    return light

@@ -8,7 +8,7 @@ from math import ceil, floor
 import cv2
 import numpy as np
 
-from hilbed.types import Array, Image, Nanos, ScenarioError
+from hilbed.types import Array, Image, Nanos
 from hilbed.vision.distortion import slopes, undistort
 from hilbed.vision.lens import Lens
 from hilbed.vision.opengl import Pinhole
@@ -16,7 +16,6 @@ from hilbed.vision.seams import Renderer, Viewpoint
 
 Pair = tuple[float, float]
 
-LARGEST = 8192
 _MARGIN = 2  # pixels around what is looked up, for the interpolation
 _FINEST = 2.0
 
@@ -73,9 +72,4 @@ def _source(lens: Lens, x: Array, y: Array) -> Bare:
     left, right = floor(fx * x.min()) - _MARGIN, ceil(fx * x.max()) + _MARGIN
     top, bottom = floor(fy * y.min()) - _MARGIN, ceil(fy * y.max()) + _MARGIN
     size = (right - left + 1, bottom - top + 1)
-    if max(size) > LARGEST:
-        raise ScenarioError(
-            f"camera distortion {lens.coefficients} needs a pinhole's image of {size[0]}×{size[1]} pixels; "
-            f"{LARGEST} a side are the most that is rendered"
-        )
     return Bare(size, (fx, fy), (float(-left), float(-top)))
