@@ -360,3 +360,15 @@ def test_no_orphan_when_the_bench_is_killed_while_its_detector_hangs(
         os.kill(bench.pid, number)
         bench.wait()
         assert all(map(ends, processes))
+
+
+def test_the_class_of_the_readme_is_a_detector(tmp_path: Path) -> None:
+    readme = (Path(__file__).parents[2] / "README.md").read_text()
+    begin = readme.index("class Mine:")
+    file = tmp_path / "mine.py"
+    file.write_text(readme[begin : readme.index("```", begin)])
+    detector = ForeignDetector(ForeignSpec(code=str(file), options={"threshold": 0.5}), WIDE, 3)
+    (found,) = detector.detect(shot())
+    assert found.azimuth == pytest.approx(WIDE.azimuth(312.4))
+    assert found[1:4] == (1e-3, 312.4, 2)
+    detector.close()
