@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 import signal
 import subprocess
 import sys
@@ -109,6 +110,26 @@ def test_one_whose_process_is_ended_goes_on_to_the_same_bytes(tmp_path: Path, nu
     ended = hilbed(*command, folder)
     assert (ended.status, "were there already" in ended.err) == (0, True)
     assert content(folder) == content(dataset(tmp_path / "fresh", frames=40))
+
+
+def test_a_full_disk_is_status_3_and_what_is_there_is_of_use(whole: Path, tmp_path: Path) -> None:
+    """A limit on the size of files stands for the disk: truth.jsonl grows beyond it."""
+    settings = [word for setting in SMALL for word in ("--set", setting)]
+    command = [sys.executable, "-m", "hilbed", "frames", "vision/clean", *settings, "-n", "4", "--out"]
+    folder = tmp_path / "dataset"
+    limit = 12 * 1024
+
+    def small_files() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    done = subprocess.run(
+        [*command, str(folder)], capture_output=True, text=True, check=False, preexec_fn=small_files
+    )
+    assert (done.returncode, done.stdout) == (3, "")
+    assert "dataset: File too large" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert write_dataset(plan(small()), folder, False, lambda _: None) > 0
+    assert content(folder) == content(whole)
 
 
 def test_what_is_there_is_not_rendered_again(whole: Path) -> None:
