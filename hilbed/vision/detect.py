@@ -23,6 +23,7 @@ ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a str
 # the more pixel columns an edge crosses. An edge that crosses none is off by 1/√12, two of them by 1/√24.
 _ROUNDING = 0.066
 _UPRIGHT = 0.2
+_LEANING = 0.6  # pixels over a beacon's rows, more than rounding makes of most upright axes
 _FINEST = 0.004  # pixels: the beacon's shape is not drawn any better
 _INTERPOLATED = 0.0065  # pixels: OpenCV distorts images with weights of 1/32 pixel
 _ROUNDED = 0.26  # pixels: how far (rms) edges that are rounded to whole pixels lie off a straight line
@@ -85,8 +86,9 @@ class ColourDetector:
         top, bottom = np.minimum.reduceat(row, first), np.maximum.reduceat(row, first)
         radius = 0.5 * np.maximum.reduceat(runs.right - runs.left, first)
         middle = np.add.reduceat(0.5 * (runs.left + runs.right), first) / count
-        highest = top + radius * steepness(self._lens, middle, top) + blurred
-        lowest = bottom - radius * steepness(self._lens, middle, bottom) - blurred
+        steep = steepness(self._lens, np.tile(middle, 2), np.concatenate((top, bottom)))
+        upper, lower = np.split(np.tile(radius, 2) * steep, 2)
+        highest, lowest = top + upper + blurred, bottom - lower - blurred
         keep = (row >= highest[blob]) & (row <= lowest[blob])
         rows = np.floor(lowest) - np.ceil(highest) if blurred else bottom - top
         many = (np.add.reduceat(keep, first, dtype=np.intp) if blurred else count) > rows + 1
@@ -118,6 +120,13 @@ class ColourDetector:
         pixel = pixel_angle(self._lens, azimuth, mean(edges.right - edges.left), 2.0 * width)
         middle -= azimuth[blob]
         half -= taper * depth
+        row = mean(runs.row.astype(float))
+        height = runs.row - row[blob]
+        leaning = mean(middle * height) / mean(height * height) / pixel
+        common = _common(leaning, count)
+        if common:
+            middle -= common * pixel[blob] * height
+            azimuth += common * pixel * (self._lens.cy - row)
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
         noise = mean(edges.noise**2)  # of an edge, pixels squared; the mean of two has half of it
         off = np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED
@@ -131,12 +140,23 @@ class ColourDetector:
             rounding = _of_crossings(np.abs(lean - narrows), np.abs(lean + narrows), part)
         drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
         std = pixel * np.sqrt(drawn + 0.5 * noise / count)
-        column, row = places(self._lens, azimuth, depression, mean(runs.row.astype(float)))
+        column, row = places(self._lens, azimuth, depression, row)
         fits = zip(azimuth, std, column, row, runs.label[first], rough, strict=True)
         return (Fit(*map(float, fit)) for fit in fits)
 
     def _detection(self, fit: Fit) -> Detection:
         return Detection(fit.azimuth, fit.std, fit.column, self._identity[int(fit.label) - 1], fit.row)
+
+
+def _common(leaning: Array, rows: Indices) -> float:
+    """Returns by how many pixels a row all axes lean, as a rolling shutter makes them; 0 where they stand.
+
+    Of what leans alone nothing can be told: it may be two beacons.
+    """
+    if leaning.size < 2:
+        return 0.0
+    lean = float(leaning[np.argsort(np.abs(leaning))[(leaning.size - 1) // 2]])
+    return lean if abs(lean) * np.median(rows) > _LEANING else 0.0
 
 
 def _of_steps(column: Indices, first: Indices, part: Array) -> Array:
@@ -156,9 +176,8 @@ def _of_crossings(left: Array, right: Array, part: Array) -> Array:
     """
 
     def one(x: Array) -> Array:
-        return np.maximum(
-            np.maximum(1.0 - x, 0.0) / np.sqrt(12.0), part / np.sqrt(360.0) / np.maximum(x, 1.0)
-        )
+        first = np.maximum(1.0 - x, 0.0) / np.sqrt(12.0)
+        return np.asarray(np.maximum(first, part / np.sqrt(360.0) / np.maximum(x, 1.0)))
 
     both: Array = np.hypot(one(left), one(right))
     return 0.5 * both
