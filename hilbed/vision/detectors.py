@@ -33,7 +33,7 @@ class MarkersSpec(Spec):
     dictionary: Literal[
         "4X4_50", "5X5_50", "6X6_50", "APRILTAG_16h5", "APRILTAG_25h9", "APRILTAG_36h11"
     ] = "4X4_50"  # fmt: skip
-    std: Positive = 0.3
+    std: Positive = 0.18
 
 
 def _code(value: Any) -> Any:

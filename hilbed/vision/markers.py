@@ -11,9 +11,10 @@ import cv2
 import numpy as np
 
 from hilbed.scene import BeaconSpec
-from hilbed.types import Array
+from hilbed.types import Array, Image
 from hilbed.vision.detectors import MarkersSpec
 from hilbed.vision.lens import Lens
+from hilbed.vision.marker_fit import constant, fitted
 from hilbed.vision.seams import Detection, Shot
 
 _BESIDE = {"board": 0.0, "box": 0.35, "cylinder": 0.12}
@@ -32,8 +33,8 @@ class Marker(NamedTuple):
 class MarkerDetector:
     """Finds the markers that the beacons carry; where none are known, any, whose number is the identity.
 
-    The corners are refined to a fraction of a pixel, and the diagonals meet in the marker's middle, however
-    it is seen. On a board that is the beacon's axis. Of a box that shows two sides, their widths tell where
+    The whole marker is fitted to a fraction of a pixel, and its diagonals meet in its middle, however it is
+    seen. On a board that is the beacon's axis. Of a box that shows two sides, their widths tell where
     between their middles the axis is; a side that is seen alone, and a cylinder's marker, lies beside the
     axis, unknown how far, which is part of the stated standard deviation. Markers that no beacon carries are
     left out.
@@ -53,22 +54,25 @@ class MarkerDetector:
 
     def detect(self, shot: Shot) -> list[Detection]:
         """Returns what is seen, from left to right."""
-        grey = cv2.cvtColor(shot.image, cv2.COLOR_RGB2GRAY)
+        grey = np.asarray(cv2.cvtColor(shot.image, cv2.COLOR_RGB2GRAY), np.uint8)
         found = [
             detection
             for family, one in self._finders.items()
-            for markers in alike(find(one, grey))
+            for markers in alike(self._fitted(family, grey, find(one, grey)))
             for detection in self._detections(family, markers)
         ]
         return sorted(found, key=lambda detection: detection.column)
+
+    def _fitted(self, family: str, grey: Image, markers: Sequence[Marker]) -> list[Marker]:
+        """Returns those markers that are looked for, as they fit the image best."""
+        wanted = [one for one in markers if self._beacons is None or (family, one.number) in self._carriers]
+        return [one._replace(corners=fitted(grey, family, *one)) for one in wanted]
 
     def _detections(self, family: str, alike: Sequence[Marker]) -> list[Detection]:
         """Returns what markers of one number show."""
         if self._beacons is None:
             return [self._detection(one, one.number, 0.0) for one in alike]
-        carriers = self._carriers.get((family, alike[0].number), [])
-        if not carriers:
-            return []
+        carriers = self._carriers[family, alike[0].number]
         beacon = self._beacons[carriers[0]]
         if len(carriers) == 1 and len(alike) == 2 and beacon.shape == "box":
             return [self._between(alike, carriers[0], _PAIR * self._radius(beacon, alike[0]))]
@@ -104,7 +108,7 @@ class MarkerDetector:
 
     def _radius(self, beacon: BeaconSpec, marker: Marker) -> float:
         """Returns how large (rad) half the width of a beacon is seen, from the height of its marker."""
-        cells = cv2.aruco.getPredefinedDictionary(_constant(beacon.dictionary)).markerSize
+        cells = cv2.aruco.getPredefinedDictionary(constant(beacon.dictionary)).markerSize
         black = 2.0 * beacon.foot_radius * (cells + 2) / (cells + 4)  # the margin is white
         return atan2(beacon.foot_radius, black * self._lens.fy / height(marker))
 
@@ -113,10 +117,10 @@ def finder(family: str) -> cv2.aruco.ArucoDetector:
     """Returns OpenCV's detector of a dictionary, with corners refined to a fraction of a pixel."""
     parameters = cv2.aruco.DetectorParameters()
     parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
-    return cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(_constant(family)), parameters)
+    return cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(constant(family)), parameters)
 
 
-def find(one: cv2.aruco.ArucoDetector, grey: cv2.typing.MatLike) -> list[Marker]:
+def find(one: cv2.aruco.ArucoDetector, grey: Image) -> list[Marker]:
     """Returns the markers in an (H, W) image."""
     corners, numbers, _ = one.detectMarkers(grey)
     if numbers is None:
@@ -156,7 +160,3 @@ def middle(lens: Lens, corners: Array) -> tuple[float, float]:
     pixel, _ = cv2.projectPoints(ray, np.zeros(3), np.zeros(3), lens.matrix, lens.distortion)
     column, row = pixel.ravel().tolist()
     return column, row
-
-
-def _constant(family: str) -> int:
-    return int(getattr(cv2.aruco, f"DICT_{family}"))
