@@ -33,7 +33,10 @@ class Stage:
     def __init__(self, client: int, beacons: Sequence[Part], others: Sequence[Part], fine: int) -> None:
         self._client = client
         with TemporaryDirectory() as folder:
-            parts = [(self._load(part, Path(folder), fine), part) for part in (*beacons, *others)]
+            parts = [
+                (_load(client, part, Path(folder) / f"{index}.obj", fine), part)
+                for index, part in enumerate((*beacons, *others))
+            ]
         self._turning = [(body, *part.at) for body, part in parts if part.turn is Turn.YAW]
         self._aimed = [(body, part) for body, part in parts if part.turn is Turn.AIM]
         self._walking = [(body, part) for body, part in parts if part.walk is not None]
@@ -88,25 +91,22 @@ class Stage:
         colour = [(1.0 if lit else UNLIT) * part for part in part.colour]
         pybullet.changeVisualShape(body, -1, rgbaColor=(*colour, 1.0), physicsClientId=self._client)
 
-    def _load(self, part: Part, folder: Path, fine: int) -> int:
-        """Loads a mesh by way of a file, since EGL crashes on one that comes as vertices."""
-        client, file = self._client, folder / f"{len(list(folder.iterdir()))}.obj"
-        file.write_text(obj(part.mesh))
-        shape = pybullet.createVisualShape(
-            pybullet.GEOM_MESH, fileName=str(file), rgbaColor=(*part.colour, 1.0), physicsClientId=client
-        )
-        half = 0.5 * part.yaw
-        body = int(
-            pybullet.createMultiBody(
-                baseVisualShapeIndex=shape,
-                basePosition=part.at,
-                baseOrientation=(0.0, 0.0, sin(half), cos(half)),
-                physicsClientId=client,
-            )
-        )
-        if part.texture is not None:
-            image = file.with_suffix(".png")
-            cv2.imwrite(str(image), np.kron(part.texture, np.ones((fine, fine), np.uint8)))
-            texture = pybullet.loadTexture(str(image), physicsClientId=client)
-            pybullet.changeVisualShape(body, -1, textureUniqueId=texture, physicsClientId=client)
-        return body
+
+def _load(client: int, part: Part, file: Path, fine: int) -> int:
+    """Loads a body by way of a file, since EGL crashes on a mesh that comes as vertices."""
+    file.write_text(obj(part.mesh))
+    shape = pybullet.createVisualShape(
+        pybullet.GEOM_MESH, fileName=str(file), rgbaColor=(*part.colour, 1.0), physicsClientId=client
+    )
+    body = pybullet.createMultiBody(
+        baseVisualShapeIndex=shape,
+        basePosition=part.at,
+        baseOrientation=pybullet.getQuaternionFromEuler((0.0, 0.0, part.yaw)),
+        physicsClientId=client,
+    )
+    if part.texture is not None:
+        image = file.with_suffix(".png")
+        cv2.imwrite(str(image), np.kron(part.texture, np.ones((fine, fine), np.uint8)))
+        texture = pybullet.loadTexture(str(image), physicsClientId=client)
+        pybullet.changeVisualShape(body, -1, textureUniqueId=texture, physicsClientId=client)
+    return int(body)
