@@ -26,15 +26,13 @@ MEASURES: dict[str, Measure] = {
     "precision": Measure("", "part of the detections that show a beacon, with no wrong identity"),
     "false_per_frame": Measure("", "detections that show no beacon, in each frame"),
     "wrong_identities": Measure("", "detections of one beacon that were taken for another"),
-    "azimuth_bias_mdeg": Measure("mdeg", "mean error of the azimuths found at `distance`"),
+    "azimuth_bias_mdeg": Measure("mdeg", "mean error of the azimuths found, at the distance judged"),
     "azimuth_std_mdeg": Measure("mdeg", "standard deviation of the azimuth's error"),
     "azimuth_rms_mdeg": Measure("mdeg", "root mean square of the azimuth's error"),
     "azimuth_max_mdeg": Measure("mdeg", "largest error of an azimuth"),
     "azimuth_bias_px": Measure("px", "mean error of the azimuth in pixels, at its beacon"),
     "azimuth_std_px": Measure("px", "its standard deviation in pixels"),
-    "normalised_rms": Measure(
-        "", "error over stated standard deviation, rms: 1 where well stated"
-    ),
+    "normalised_rms": Measure("", "error over stated standard deviation, rms: 1 where well stated"),
     "time_p50_ms": Measure("ms", "time a frame takes, median"),
     "time_p95_ms": Measure("ms", "time a frame takes, 95 of 100 are quicker"),
     "time_p99_ms": Measure("ms", "time a frame takes, 99 of 100 are quicker"),
