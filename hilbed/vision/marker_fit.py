@@ -35,7 +35,9 @@ def fitted(grey: Image, family: str, number: int, corners: Array) -> Array:
     expected = _drawn(family, number, corners - low, piece.shape)
     shift = np.eye(2, 3, dtype=np.float32)
     try:
-        _, found = cv2.findTransformECC(expected, piece, shift, cv2.MOTION_TRANSLATION, _UNTIL, None, 1)
+        _, found = cv2.findTransformECC(
+            expected, piece, shift, cv2.MOTION_TRANSLATION, _UNTIL, np.full_like(piece, 255), 1
+        )
     except cv2.error:  # it does not converge
         return corners
     moved = np.asarray(found, float)[:, 2]
