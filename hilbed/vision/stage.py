@@ -88,7 +88,7 @@ class Stage:
         if lit == self._lit[body]:
             return
         self._lit[body] = lit
-        colour = [(1.0 if lit else UNLIT) * part for part in part.colour]
+        colour = [(1.0 if lit else UNLIT) * channel for channel in part.colour]
         pybullet.changeVisualShape(body, -1, rgbaColor=(*colour, 1.0), physicsClientId=self._client)
 
 
