@@ -9,11 +9,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 from hilbed.cost import Cost
 from hilbed.scene import BeaconSpec
 from hilbed.vision import egl
+from hilbed.vision.detect import ColourDetector
 from hilbed.vision.opengl import axes
 from hilbed.vision.render import BulletRenderer, Scenery
 from hilbed.vision.seams import Viewpoint
-from tests.vision.oracle import SKEWED, depths, turn
-from tests.vision.scenes import COLOURS
+from tests.vision.oracle import SKEWED, depths, pixels, turn
+from tests.vision.scenes import COLOURS, WIDE, axis, beacon, renderer, shot
 
 SHAPES = [
     {"shape": "cone"},
@@ -84,6 +85,27 @@ def test_labels_count_beacons_from_one_and_the_nearer_hides_the_other() -> None:
     labels = camera.labels(Viewpoint(0.0, 0.0, 0.3, 0.0), 0)
     camera.close()
     assert set(np.unique(labels)) == {0, 2}
+
+
+def test_azimuths_have_no_bias_against_the_projected_axis(with_egl: bool) -> None:
+    rng = np.random.default_rng(3)
+    errors = []
+    for _ in range(20):
+        azimuths = np.linspace(-0.6, 0.6, len(COLOURS)) + rng.uniform(-0.05, 0.05, len(COLOURS))
+        distances = rng.uniform(2.0, 8.0, len(COLOURS))
+        beacons = [beacon(a, d, c) for a, d, c in zip(azimuths, distances, COLOURS, strict=True)]
+        camera, detector = renderer(beacons, egl=with_egl), ColourDetector(WIDE, beacons)
+        for _ in range(4):
+            low, high = (-0.1, -0.1, 0.15, -0.08), (0.1, 0.1, 0.5, 0.08)
+            view = Viewpoint(*rng.uniform(low, high).tolist())
+            for found in detector.detect(shot(camera.render(view, 0))):
+                assert found.beacon is not None
+                column = pixels(axis(beacons[found.beacon]), WIDE, view)[:, 0].mean()
+                errors.append(found.column - column)
+        camera.close()
+    assert len(errors) > 450
+    assert abs(np.mean(errors)) <= 0.01 - 3.0 * np.std(errors) / len(errors) ** 0.5
+    assert np.std(errors) <= 0.05
 
 
 @pytest.mark.usefixtures("working_egl")
