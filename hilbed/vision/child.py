@@ -6,12 +6,8 @@ import json
 import os
 import pickle
 import signal
-import socket
-import sys
 from contextlib import suppress
-from mmap import mmap
 from select import select
-from subprocess import DEVNULL, Popen
 from time import monotonic
 from typing import Any
 from weakref import finalize
@@ -19,6 +15,7 @@ from weakref import finalize
 import numpy as np
 
 from hilbed.types import HilbedError, Image, ScenarioError
+from hilbed.vision.spawn import end, start
 
 LONGEST = 1 << 20
 """bytes of an answer: what is longer is garbage."""
@@ -41,10 +38,10 @@ class Child:
 
     def __init__(self, module: str, size: int, first: object) -> None:
         try:
-            self._process, self._socket, self._pipe, self._memory = _start(module, size)
+            self._process, self._socket, self._pipe, self._memory = start(module, size)
         except OSError as error:
             raise ScenarioError(f"{module}: a process cannot be started: {error.strerror}") from error
-        self._finalize = finalize(self, _end, self._process, self._socket, self._pipe)
+        self._finalize = finalize(self, end, self._process, self._socket, self._pipe)
         self._received = bytearray()
         self._said = bytearray()
         with suppress(ChildLost):  # the first answer will tell
@@ -136,46 +133,3 @@ class Child:
         if status < 0:
             return ChildLost(f"its process has died of {signal.Signals(-status).name}")
         return ChildLost(f"its process has ended with {status}")
-
-
-def _start(module: str, size: int) -> tuple[Popen[bytes], socket.socket, int, mmap]:
-    """Returns a new child, this end of the line to it, what it prints, and memory (bytes) that both see.
-
-    It finds modules where this process does; its own hashes of strings are always the same.
-    """
-    path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
-    memory = os.memfd_create("hilbed-shot")
-    ours, theirs = socket.socketpair()
-    printed, printing = os.pipe()
-    os.set_blocking(printed, False)
-    try:
-        os.truncate(memory, size)
-        shared = mmap(memory, 0)
-        child = Popen(
-            [sys.executable, "-P", "-u", "-m", module, *map(str, (theirs.fileno(), memory, os.getpid()))],
-            env={**os.environ, "PYTHONPATH": path, "PYTHONHASHSEED": "0"},
-            pass_fds=(theirs.fileno(), memory),
-            process_group=0,
-            stdin=DEVNULL,
-            stdout=printing,
-            stderr=printing,
-        )
-        return child, ours, printed, shared
-    except OSError:
-        ours.close()
-        os.close(printed)
-        raise
-    finally:
-        theirs.close()
-        os.close(memory)
-        os.close(printing)
-
-
-def _end(child: Popen[bytes], line: socket.socket, printed: int) -> None:
-    """Ends a child and what it has started."""
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(child.pid, signal.SIGKILL)
-    child.kill()
-    child.wait()
-    line.close()
-    os.close(printed)

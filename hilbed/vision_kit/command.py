@@ -4,37 +4,25 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from math import isfinite
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from hilbed import yaml12
 from hilbed.console import end_progress, progress, quiet_pipe
-from hilbed.scenario.load import load, resolved
-from hilbed.sweep import listed
-from hilbed.types import ScenarioError
+from hilbed.scenario.load import resolved
 from hilbed.versions import versions
-from hilbed.vision.detectors import ForeignSpec, make_detector
-from hilbed.vision.seams import Closing, Detector
-from hilbed.vision_kit.archive import Archive, is_dataset
-from hilbed.vision_kit.feed import feed, is_feed
-from hilbed.vision_kit.labelled import LabelledShot
+from hilbed.vision.detectors import ForeignSpec
+from hilbed.vision_kit.feed import feed
+from hilbed.vision_kit.footage import footage, opened_detector, varied
 from hilbed.vision_kit.measures import judge, measure
 from hilbed.vision_kit.results import admit, keep
-from hilbed.vision_kit.studio import Studio, Subject
+from hilbed.vision_kit.sources import is_feed
+from hilbed.vision_kit.studio import Subject
 from hilbed.vision_kit.trial import Rules, Trial, joined, run_trial
 
 PAGE, VERDICT = "vision.html", "vision.json"
-
-
-class Footage(NamedTuple):
-    """Labelled frames, how many, and whose they are."""
-
-    subject: Subject
-    total: int
-    shots: Iterator[LabelledShot]
 
 
 def vision(options: Namespace) -> int:
@@ -61,30 +49,18 @@ def _score(options: Namespace) -> tuple[Subject, dict[str, Trial]]:
     """Returns the trial with each setting of `--vary`, and the subject as it is with the first."""
     parts: dict[str, Trial] = {}
     subjects: list[Subject] = []
-    for setting in _varied(options):
+    for setting in varied(options):
         with footage(options, setting) as (subject, total, shots), opened_detector(subject) as detector:
             if not subjects:
                 admit(_folder(options, subject), VERDICT, options.force)
             subjects.append(subject)
-            rules, first = Rules(subject.vision.visible, subject.vision.distance), len(parts) * total
+            rules = Rules(subject.vision.visible, subject.vision.distance)
+            first = sum(part.frames for part in parts.values())
             try:
                 parts[setting] = run_trial(shots, detector, rules, _teller(setting, first, total), first)
             finally:
                 end_progress()
     return subjects[0], parts
-
-
-def _varied(options: Namespace) -> list[str]:
-    """Returns the settings of `--vary`, all of which hold; an empty one without it."""
-    if options.vary is None:
-        return [""]
-    if is_dataset(options.scenario):
-        raise ScenarioError(f"--vary renders frames, and {options.scenario} has its own")
-    path, values = listed("--vary", options.vary)
-    found = [f"{path}={value}" for value in values]
-    for setting in found:
-        load(options.scenario, [*options.settings, setting], options.seed, options.detector)
-    return found
 
 
 def _teller(setting: str, first: int, total: int) -> Callable[[int], None]:
@@ -93,37 +69,6 @@ def _teller(setting: str, first: int, total: int) -> Callable[[int], None]:
 
 def _folder(options: Namespace, subject: Subject) -> Path:
     return options.out or Path("runs") / f"vision-{subject.name}-{subject.scenario.seed}"
-
-
-@contextmanager
-def footage(options: Namespace, setting: str) -> Iterator[Footage]:
-    """Yields the frames of a dataset, or those rendered of a scenario, with one more setting if there is."""
-    settings = [*options.settings, *([setting] if setting else [])]
-    if options.count is not None and options.count < 1:
-        raise ScenarioError(f"-n {options.count}: at least one frame is needed")
-    if is_dataset(options.scenario):
-        archive = Archive(Path(options.scenario), settings, options.seed, options.detector)
-        total = min(options.count or len(archive), len(archive))
-        yield Footage(archive.subject, total, archive.shots(total))
-        return
-    if options.count is not None:
-        settings.append(f"vision.frames={options.count}")
-    subject = Subject(load(options.scenario, settings, options.seed, options.detector))
-    with Studio(subject) as studio:
-        yield Footage(subject, subject.vision.frames, studio.shots(subject.vision.frames))
-
-
-@contextmanager
-def opened_detector(subject: Subject) -> Iterator[Detector]:
-    """Yields the detector of a camera, and closes it where it holds anything."""
-    camera = subject.camera
-    anonymous = camera.identity == "anonymous"
-    detector = make_detector(camera.detector, subject.lens, subject.beacons, anonymous)
-    try:
-        yield detector
-    finally:
-        if isinstance(detector, Closing):
-            detector.close()
 
 
 def _name(subject: Subject) -> str:
