@@ -20,8 +20,14 @@ from hilbed.types import Nanos, Pose, Rng
 CLEARANCE = 0.3  # m from any beacon's axis: the camera is never inside one
 TRIES = 100
 SPEEDS, YAW_RATES = (0.0, 0.5), (-0.5, 0.5)  # m/s, rad/s
-AROUND: tuple[Nanos, ...] = tuple(range(-100_000_000, 100_000_001, 20_000_000))
-"""Moments before and after a frame's time that are told of its exposure."""
+AROUND = 0.1  # s before and after a frame's time of which is told where the robot was
+MOMENTS = 5  # on either side of a frame's time
+
+
+def around(camera: CameraSpec) -> tuple[Nanos, ...]:
+    """Returns moments relative to a frame's time, over all that its exposure and readout may take."""
+    step = nanos(max(AROUND, (camera.exposure + camera.readout) / 2)) // MOMENTS
+    return tuple(k * step for k in range(-MOMENTS, MOMENTS + 1))
 
 
 class Poses(Protocol):
@@ -37,12 +43,11 @@ class AlongPath:
         self, reference: Reference, beacons: Sequence[BeaconSpec], camera: CameraSpec, step: Nanos
     ) -> None:
         self._reference, self._beacons = reference, beacons
-        self._pan, self._step = camera.pan, step
+        self._pan, self._step, self._around = camera.pan, step, around(camera)
 
     def at(self, k: int) -> Exposure:
         t = k * self._step + self._step // 2
-        around = (max(t + dt, 0) for dt in AROUND)
-        return Exposure(t, tuple(self._moment(one) for one in around))
+        return Exposure(t, tuple(self._moment(max(t + dt, 0)) for dt in self._around))
 
     def _moment(self, t: Nanos) -> Moment:
         pose = self._reference.at(t).pose
@@ -72,13 +77,13 @@ class Anywhere:
         self._camera, self._distance = camera, distance
         self._pan = camera.pan.angle
         self._rate = camera.pan.rate if camera.pan.kind == "scanning" else 0.0
-        self._step = nanos(1.0 / camera.rate)
+        self._step, self._around = nanos(1.0 / camera.rate), around(camera)
 
     def at(self, k: int) -> Exposure:
         random = rng.stream(self._seed, f"frames.{k}")
         pose, t = self._pose(random), (k + 1) * self._step
         v, w = random.uniform(*SPEEDS), random.uniform(*YAW_RATES)
-        return Exposure(t, tuple(self._moment(pose, (v, w), t, dt) for dt in AROUND))
+        return Exposure(t, tuple(self._moment(pose, (v, w), t, dt) for dt in self._around))
 
     def _moment(self, pose: Pose, speeds: tuple[float, float], t: Nanos, dt: Nanos) -> Moment:
         v, w = (speed * seconds(dt) for speed in speeds)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hilbed.types import ScenarioError
-from hilbed.vision_kit.poses import AROUND, CLEARANCE
+from hilbed.vision_kit.poses import CLEARANCE
 from hilbed.vision_kit.studio import Studio, Subject, make_poses
 from tests.vision_kit.scenes import small
 
@@ -40,10 +40,20 @@ def test_poses_along_the_path_are_those_of_the_reference() -> None:
     assert np.diff(times).tolist() == [2_000_000_000] * 9, "spread over the 20 s of the scenario"
     for k in range(10):
         exposure = poses.at(k)
-        assert [m.t - exposure.t for m in exposure.moments] == list(AROUND)
+        assert [m.t - exposure.t for m in exposure.moments] == list(
+            range(-100_000_000, 100_000_001, 20_000_000)
+        )
         for moment in exposure.moments:
             assert moment.pose == reference.at(moment.t).pose
             assert moment.pan == pytest.approx(1.5e-9 * moment.t)
+
+
+def test_a_long_exposure_is_told_of_whole() -> None:
+    slow = ("sensors.camera.rate=1", "sensors.camera.exposure=0.7", "sensors.camera.latency=0.5")
+    for poses in ("path", "random"):
+        exposure = make_poses(Subject(small(*slow, f"vision.poses={poses}"))).at(1)
+        assert exposure.moments[0].t <= exposure.t - 0.35e9
+        assert exposure.moments[-1].t >= exposure.t + 0.35e9
 
 
 def test_an_axis_that_tracks_a_beacon_looks_at_it() -> None:
