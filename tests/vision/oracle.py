@@ -55,12 +55,12 @@ def rays(pin: Pin, view: Viewpoint) -> Array:
 def surface(spec: BeaconSpec) -> Array:
     """Returns points (n, 3) in the map all over a round beacon."""
     x, y = spec.at
-    around = np.linspace(0.0, 2.0 * np.pi, 721)
+    around = np.linspace(0.0, 2.0 * np.pi, 241)
     if spec.shape == "sphere":
         centre = spec.height - spec.foot_radius
-        polar = np.linspace(0.0, np.pi, 361)[:, None]
+        polar = np.linspace(0.0, np.pi, 91)[:, None]
         ring = spec.foot_radius * np.sin(polar)
-        z = np.broadcast_to(centre + spec.foot_radius * np.cos(polar), (361, 721))
+        z = np.broadcast_to(centre + spec.foot_radius * np.cos(polar), (91, 241))
         return np.stack((x + ring * np.cos(around), y + ring * np.sin(around), z), axis=-1).reshape(-1, 3)
     top = spec.top_radius if spec.shape == "cone" else spec.foot_radius
     rims = [
