@@ -2,7 +2,7 @@
 
 .venv/bin/python scripts/camera_numbers.py [--frames N] [--memory N]
 
-Cost is processor time beside that of the bare renderer, taken in turn, frame by frame, so that a busy machine
+Cost is processor time beside that of the bare renderer, taken in turn, scene by scene, so that a busy machine
 changes both alike. --memory exposes N frames more and prints how the resident memory moves meanwhile.
 """
 
@@ -79,6 +79,7 @@ def turning(pose: Pose, t: int, rate: float) -> Exposure:
 
 
 def measure(block: dict[str, Any], frames: int) -> Result:
+    """Returns what a camera of these keys makes of scenes of A_SCENE frames each."""
     spec, rng, rows, wrong, took = (
         CameraSpec.model_validate(block),
         np.random.default_rng(1),
@@ -87,30 +88,36 @@ def measure(block: dict[str, Any], frames: int) -> Result:
         np.zeros(3),
     )
     size: dict[str, Any] = {name: block[name] for name in ("width", "height") if name in block}
-    for frame in range(frames):
-        if frame % A_SCENE == 0:
-            beacons = scene(spec.lens.fov, rng)
-            cameras = [open_imager(CameraSpec(**one), Setting(beacons), Cost()) for one in (size, block)]
-            detector = ColourDetector(spec.lens, beacons)
-        x, y, yaw = rng.uniform(-0.05, 0.05, 3).tolist()
-        exposure = turning(Pose(x, y, yaw), 10**8 * (1 + frame), RATE * rng.choice((-1.0, 1.0)))
-        start = thread_time()
-        cameras[0].shoot(exposure)
-        bare = thread_time()
-        shot = cameras[1].shoot(exposure)
-        exposed = thread_time()
-        detections = detector.detect(shot)
-        took += np.diff((start, bare, exposed, thread_time()))
-        for found in detections:
-            assert found.beacon is not None
-            bx, by = beacons[found.beacon].at
-            error = found.azimuth + yaw - atan2(by - y, bx - x)
-            wrong += abs(error) > np.arctan(0.07 / hypot(bx - x, by - y))
-            rows.append((error, found.std))
-        if frame % A_SCENE == A_SCENE - 1:
-            for camera in cameras:
-                camera.close()
-    return Result(np.array(rows), len(COLOURS) * frames, wrong, *(took / frames))
+    scenes = frames // A_SCENE
+    for number in range(scenes):
+        beacons = scene(spec.lens.fov, rng)
+        bare, camera = (open_imager(CameraSpec(**one), Setting(beacons), Cost()) for one in (size, block))
+        detector = ColourDetector(spec.lens, beacons)
+        poses = [Pose(*rng.uniform(-0.05, 0.05, 3).tolist()) for _ in range(A_SCENE)]
+        times = [10**8 * (1 + A_SCENE * number + k) for k in range(A_SCENE)]
+        exposures = [
+            turning(p, t, RATE * (-1) ** k) for k, (p, t) in enumerate(zip(poses, times, strict=True))
+        ]
+        times_taken = [thread_time()]
+        for exposure in exposures:
+            bare.shoot(exposure)
+        times_taken.append(thread_time())
+        shots = [camera.shoot(exposure) for exposure in exposures]
+        times_taken.append(thread_time())
+        found = [detector.detect(shot) for shot in shots]
+        times_taken.append(thread_time())
+        took += np.diff(times_taken)
+        for pose, detections in zip(poses, found, strict=True):
+            for one in detections:
+                assert one.beacon is not None
+                bx, by = beacons[one.beacon].at
+                error = one.azimuth + pose.yaw - atan2(by - pose.y, bx - pose.x)
+                wrong += abs(error) > np.arctan(0.07 / hypot(bx - pose.x, by - pose.y))
+                rows.append((error, one.std))
+        bare.close()
+        camera.close()
+    count = scenes * A_SCENE
+    return Result(np.array(rows), len(COLOURS) * count, wrong, *(took / count))
 
 
 def line(name: str, result: Result) -> str:

@@ -21,6 +21,7 @@ from hilbed.vision.opengl import Pinhole
 from hilbed.vision.seams import Renderer, Shot, ShotTruth, Viewpoint
 from hilbed.vision.shutter import Shutter, collect, count, moments, shares
 from hilbed.vision.truth import beacons_truth
+from hilbed.vision.warp import mean
 
 if TYPE_CHECKING:
     from hilbed.sensors.camera import CameraSpec
@@ -79,11 +80,13 @@ class Imager:
         self._renderer.close()
 
     def _images(self, exposure: Exposure) -> list[Image]:
-        """Returns what is seen in equal parts of the exposure, one image where nothing moves."""
+        """Returns what is seen in equal parts of the exposure, or its mean where all rows see the same."""
         shutter, t = self._film.shutter, exposure.t
         images = count(self._motion(exposure)) if shutter.span else 1
         times = [t + nanos(late) for late in moments(shutter, images).tolist()]
-        return [self._renderer.render(self.viewpoint(exposure.at(one)), one) for one in times]
+        looks = [(self.viewpoint(exposure.at(one)), one) for one in times]
+        parts = [[look] for look in looks] if shutter.readout else [looks]
+        return [mean(self._renderer, part) for part in parts]
 
     def _motion(self, exposure: Exposure) -> float:
         """Returns by how many pixels the camera's motion moves what it sees."""

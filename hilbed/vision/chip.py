@@ -41,6 +41,7 @@ class Chip(NamedTuple):
 
 
 PERFECT = Chip()
+_LINEAR = PERFECT[-3:]  # gain, gamma, bits: levels are light
 
 
 def blocks(height: int, width: int) -> Iterator[slice]:
@@ -60,10 +61,14 @@ def develop(light: Light, first: int, chip: Chip, rng: Rng | None, image: Image)
         light *= falloff(width, height, chip.vignetting)[rows]
     if chip.noisy and rng is not None:
         add_noise(light, chip, rng)
-    light *= _STEPS
-    light += 0.5
-    np.clip(light, 0.0, _FULL - 1, out=light)
-    levels(chip.gain, chip.gamma, chip.bits).take(light.astype(np.uint16), out=image[rows])
+    if (chip.gain, chip.gamma, chip.bits) == _LINEAR:
+        light += 0.5
+        image[rows] = np.clip(light, 0.0, 255.0, out=light)
+    else:
+        light *= _STEPS
+        light += 0.5
+        np.clip(light, 0.0, _FULL - 1, out=light)
+        levels(chip.gain, chip.gamma, chip.bits).take(light.astype(np.uint16), out=image[rows])
 
 
 def add_noise(light: Light, chip: Chip, rng: Rng) -> None:

@@ -62,13 +62,17 @@ def soft(image: Image, runs: Runs, blob: Indices) -> Edges:
     between pixels, where the line through two pixels is up to 0.09 pixel off.
     image: (H, W, 3); blob: that each run belongs to, ascending.
     """
-    full = _full_colour(image, runs, blob)
+    full = np.tile(_full_colour(image, runs, blob), (2, 1))
+    row, inside = np.tile(runs.row, 2), np.concatenate((runs.left + 1, runs.right))
+    outwards = np.repeat((-1, 1), runs.row.size)
     for reach in _REACHES:
-        covers = [_cover(image, runs, full, side, reach) for side in (-1, 1)]
-        if np.mean([cover[:, -2] - cover[:, -1] for cover in covers]) < _LEVEL:
+        column = inside[:, None] + outwards[:, None] * np.arange(-reach, reach + 1)
+        cover = _cover(image[row[:, None], np.clip(column, 0, image.shape[1] - 1)].astype(float), full)
+        if np.mean(cover[:, -2] - cover[:, -1]) < _LEVEL:
             break
-    (left, low), (right, high) = (_crossing(cover) for cover in covers)
-    return Edges(runs.left + 1 - left, runs.right + right, np.hypot(low, high) / np.sqrt(2.0), True)
+    beyond, noise = _crossing(cover)
+    (left, right), (low, high) = np.split(inside + outwards * beyond, 2), np.split(noise, 2)
+    return Edges(left, right, np.hypot(low, high) / np.sqrt(2.0), True)
 
 
 def _full_colour(image: Image, runs: Runs, blob: Indices) -> Array:
@@ -82,18 +86,12 @@ def _full_colour(image: Image, runs: Runs, blob: Indices) -> Array:
     return np.asarray(np.repeat(total, count, 0))
 
 
-def _cover(image: Image, runs: Runs, full: Array, side: int, reach: int) -> Array:
-    """Returns (n, 2 reach + 1) the part of the full colour (n, 3) in the pixels around an edge, outwards.
-
-    side: −1 the left edge, 1 the right one.
-    """
-    inside = runs.left + 1 if side < 0 else runs.right
-    column = inside[:, None] + side * np.arange(-reach, reach + 1)
-    pixels = image[runs.row[:, None], np.clip(column, 0, image.shape[1] - 1)].astype(float)
+def _cover(pixels: Array, full: Array) -> Array:
+    """Returns (n, k) the part of the full colour (n, 3) in pixels (n, k, 3), the last two background."""
     outside = 0.5 * (pixels[:, -1] + pixels[:, -2])
     axis = full - outside
-    length = np.maximum((axis * axis).sum(1), 1.0)
-    return np.asarray(((pixels - outside[:, None]) * axis[:, None]).sum(2) / length[:, None])
+    axis /= np.maximum((axis * axis).sum(1), 1.0)[:, None]
+    return np.asarray(np.einsum("nkc,nc->nk", pixels, axis) - (outside * axis).sum(1)[:, None])
 
 
 def _crossing(cover: Array) -> tuple[Array, Array]:

@@ -34,8 +34,11 @@ def rays(lens: Lens, edges: Edges, row: Indices) -> Rays:
 
 
 def steepness(lens: Lens, column: Array, row: Indices) -> Array:
-    """Returns how steeply (tangent, positive) points of the image look down or up in its middle's plane."""
-    if lens.upright and not lens.distorted:
+    """Returns how steeply (tangent, positive) points of the image look down or up in its middle's plane.
+
+    What distortion changes in that is left out.
+    """
+    if lens.upright:
         return np.asarray(np.abs((row - lens.cy) / lens.fy))
     azimuth, elevation = lens.direction(column, row.astype(float))
     return np.asarray(np.abs(np.tan(elevation) / np.cos(azimuth)))

@@ -66,6 +66,8 @@ def shares(shutter: Shutter, images: int, rows: int) -> Array:
 
 def collect(images: Sequence[Image], part: Array, rows: slice) -> Light:
     """Returns the light (h, W, 3) on some rows; part (images, H): what each image has in each row."""
+    if len(images) == 1:
+        return images[0][rows].astype(np.float32)
     light = np.zeros(images[0][rows].shape, np.float32)
     for image, share in zip(images, part[:, rows].astype(np.float32), strict=True):
         if share.any():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import ceil, floor
 
 import cv2
@@ -15,6 +15,7 @@ from hilbed.vision.opengl import Pinhole
 from hilbed.vision.seams import Renderer, Viewpoint
 
 Pair = tuple[float, float]
+Look = tuple[Viewpoint, Nanos]
 
 _MARGIN = 2  # pixels around what is looked up, for the interpolation
 _FINEST = 2.0
@@ -46,7 +47,11 @@ class Warped:
 
     def render(self, view: Viewpoint, t: Nanos) -> Image:
         """Returns (H, W, 3) RGB as seen from `view` at t."""
-        image = self._renderer.render(view, t)
+        return self.mean([(view, t)])
+
+    def mean(self, looks: Sequence[Look]) -> Image:
+        """Returns the mean (H, W, 3) of images, with one distortion for all of them."""
+        image = mean(self._renderer, looks)
         return np.asarray(cv2.remap(image, *self._maps, cv2.INTER_LINEAR), np.uint8)
 
     def labels(self, view: Viewpoint, t: Nanos) -> Image:
@@ -56,6 +61,19 @@ class Warped:
     def close(self) -> None:
         """Gives back what the pinhole's renderer holds."""
         self._renderer.close()
+
+
+def mean(renderer: Renderer, looks: Sequence[Look]) -> Image:
+    """Returns the mean (H, W, 3) of the images seen from viewpoints at times."""
+    if isinstance(renderer, Warped):
+        return renderer.mean(looks)
+    images = [renderer.render(*look) for look in looks]
+    if len(images) == 1:
+        return images[0]
+    total = cv2.add(images[0], images[1], dtype=cv2.CV_16U)
+    for image in images[2:]:
+        total = cv2.add(total, image, dtype=cv2.CV_16U)
+    return np.asarray(cv2.convertScaleAbs(total, alpha=1.0 / len(images)), np.uint8)
 
 
 def _looked_up(lens: Lens) -> tuple[Array, Array]:

@@ -104,7 +104,7 @@ def test_what_is_seen_is_where_opencv_projects_it(name: str) -> None:
 def test_what_egl_shows_through_a_distorting_lens_is_where_opencv_projects_it() -> None:
     if egl.trouble():
         pytest.skip(f"EGL does not work on this machine: {egl.trouble()}")
-    off, _, missing = columns_off({**BARREL, "renderer": "egl"}, 6)
+    off, _, missing = columns_off({**BARREL, "renderer": "egl"}, 3)
     assert missing <= 0.02 * off.size
     assert abs(off.mean()) <= 0.01
 
@@ -143,53 +143,3 @@ def test_no_beacon_and_a_beacon_around_the_camera_give_a_frame_and_a_truth() -> 
         assert len(truth.beacons) == len(beacons)
         assert all(0.0 <= one.visible <= 1.0 for one in truth.beacons)
         imager.close()
-
-
-def motion(rate: float, span: float) -> Exposure:
-    """Returns an exposure in which the robot turns at `rate` (rad/s)."""
-    from hilbed.sensors.exposure import Moment
-
-    half = round(1e9 * span / 2)
-    moments = [Moment(k * half, Pose(0.0, 0.0, k * rate * span / 2), 0.0) for k in (-1, 0, 1)]
-    return Exposure(0, tuple(moments))
-
-
-def test_motion_smears_edges_evenly_and_leaves_the_azimuth() -> None:
-    spec = CameraSpec(exposure=0.01)
-    scene = (beacon(0.1, 2.0),)
-    imager = open_imager(spec, Setting(scene), Cost())
-    sharp, blurred = (imager.shoot(motion(rate, 0.01)) for rate in (0.0, 1.5))
-    imager.close()
-    row = blurred.image[40, :, 1].astype(float)
-    assert set(np.unique(sharp.image[40, :, 1]).tolist()) == {0, 255}
-    levels = np.count_nonzero((row > 0) & (row < 255))
-    assert 7 <= levels <= 12  # two edges, 0.015 rad are 4.8 pixels
-    detector = ColourDetector(spec.lens, scene)
-    (one,), (other,) = detector.detect(sharp), detector.detect(blurred)
-    assert other.azimuth == pytest.approx(one.azimuth, abs=2e-4)
-
-
-def test_a_rolling_shutter_leans_what_stands_upright() -> None:
-    spec = CameraSpec(readout=0.02)
-    scene = (beacon(0.0, 2.0, foot_radius=0.1, top_radius=0.1, height=2.0),)
-    imager = open_imager(spec, Setting(scene), Cost())
-    image = imager.shoot(motion(1.0, 0.02)).image
-    imager.close()
-    middle = [np.flatnonzero(line[:, 1] < 128).mean() for line in image]
-    expected = 0.02 * spec.lens.fx * 63 / 64  # turning left moves the picture to the right
-    assert middle[-1] - middle[0] == pytest.approx(expected, abs=1.0)
-    assert middle[32] == pytest.approx(spec.lens.column(0.0), abs=1.0)
-
-
-def test_noise_of_a_frame_is_its_own_whatever_came_before() -> None:
-    spec = CameraSpec(read_noise=0.05)
-    scene = (beacon(0.0, 2.0),)
-    here, there = still(7, Pose(0.0, 0.0, 0.0)), still(8, Pose(0.0, 0.0, 0.0))
-    images = []
-    for seed, exposures in ((1, (here,)), (1, (there, here)), (2, (here,))):
-        imager = open_imager(spec, Setting(scene, seed=seed), Cost())
-        images.append([imager.shoot(exposure).image for exposure in exposures])
-        imager.close()
-    assert (images[0][0] == images[1][1]).all()
-    assert (images[1][0] != images[1][1]).any()
-    assert (images[0][0] != images[2][0]).any()
