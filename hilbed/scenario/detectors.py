@@ -81,7 +81,8 @@ def allowed(sensors: Mapping[str, SensorSpec], folder: Path, given: str | None) 
 
 def _check_inside(code: Code, folder: Path) -> None:
     if not code.is_file:
-        return _check_anywhere(code)
+        _check_anywhere(code)
+        return
     try:
         files.resolve(code.place, folder)
     except ScenarioError as error:

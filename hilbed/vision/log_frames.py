@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -58,8 +59,8 @@ class LogFrames:
             try:
                 for _, _, message in NonSeekingReader(stream).iter_messages([TOPIC], log_time_order=False):
                     yield message.log_time, message.data
-            except McapError as error:
-                raise ScenarioError(f"{self.name}: cannot be read on: {error!r}") from None
+            except (McapError, struct.error, RuntimeError) as error:  # cut off between, or inside, records
+                raise ScenarioError(f"{self.name}: is cut off, or is no MCAP: {error!r}") from None
 
     def _image(self, data: bytes) -> Any:
         fields = dict(_fields(data))

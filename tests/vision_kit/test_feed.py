@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from re import search
 from typing import Any
@@ -10,8 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hilbed.types import ScenarioError
 from hilbed.vision.image_file import read_image
 from hilbed.vision.lens import Lens
+from hilbed.vision.log_frames import LogFrames
+from hilbed.vision.seams import Shot
 from tests.program.hilbed import Ended, hilbed
 from tests.vision.foreign import write
 from tests.vision.mjpeg import camera
@@ -102,6 +106,30 @@ def test_a_run_s_frames_give_the_detections_that_it_recorded(run: Path) -> None:
     recorded = np.column_stack([signals[name].reshape(-1) for name in names])
     assert len(recorded) > 20
     assert found[: len(recorded)] == pytest.approx(recorded, abs=1e-15)
+
+
+@pytest.mark.parametrize("part", [0.0, 0.001, 0.3, 0.5, 0.7, 0.999])
+def test_of_a_log_that_is_cut_off_the_frames_before_are_read(run: Path, tmp_path: Path, part: float) -> None:
+    data, path, lens = (run / "log.mcap").read_bytes(), tmp_path / "log.mcap", Lens.of_fov(640, 64, np.pi / 2)
+    path.write_bytes(data[: int(part * len(data))])
+    shots: list[Shot] = []
+    with pytest.raises(ScenarioError, match=r"log\.mcap: is cut off"):
+        shots.extend(LogFrames(path, lens, 0).frames())
+    assert [shot.t for shot in shots] == [10**9 + count * 10**8 for count in range(len(shots))]
+    assert (len(shots) > 3) == (part >= 0.5)
+
+
+def test_a_log_of_another_camera_or_of_none_is_told(run: Path, tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match="a frame has 640×64 pixels; the run's camera has 320×64"):
+        next(LogFrames(run / "log.mcap", Lens.of_fov(320, 64, 1.0), 0).frames())
+    with pytest.raises(ScenarioError, match="only a run with record: all has its frames"):
+        LogFrames(tmp_path / "log.mcap", Lens.of_fov(320, 64, 1.0), 0)
+
+
+def test_a_log_without_the_package_that_reads_it_is_told(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mcap.reader", None)
+    with pytest.raises(ScenarioError, match="pip install mcap"):
+        LogFrames(run / "log.mcap", Lens.of_fov(640, 64, 1.0), 0)
 
 
 def test_a_run_s_frames_for_another_detector(run: Path, tmp_path: Path) -> None:
