@@ -116,7 +116,7 @@ def test_of_a_log_that_is_cut_off_the_frames_before_are_read(run: Path, tmp_path
     with pytest.raises(ScenarioError, match=r"log\.mcap: is cut off"):
         shots.extend(LogFrames(path, lens, 0).frames())
     assert [shot.t for shot in shots] == [10**9 + count * 10**8 for count in range(len(shots))]
-    assert (len(shots) > 3) == (part >= 0.5)
+    assert len(shots) >= (8 if part > 0.9 else 1 if part >= 0.5 else 0)
 
 
 def test_a_log_of_another_camera_or_of_none_is_told(run: Path, tmp_path: Path) -> None:
