@@ -25,8 +25,8 @@ _ROUNDING = 0.066
 _UPRIGHT = 0.2
 _LEANING = 0.6  # pixels over a beacon's rows, more than rounding makes of most upright axes
 _FINEST = 0.004  # pixels: the beacon's shape is not drawn any better
-_INTERPOLATED = 0.0065  # pixels: OpenCV distorts images with weights of 1/32 pixel
-_ROUNDED = 0.26  # pixels: how far (rms) edges that are rounded to whole pixels lie off a straight line
+_INTERPOLATED = 0.008  # pixels: OpenCV distorts images with weights of 1/32 pixel
+_ROUNDED = 0.24  # pixels: how far (rms) edges that are rounded to whole pixels lie off a straight line
 
 
 class Fit(NamedTuple):

@@ -12,7 +12,7 @@ import numpy as np
 
 from hilbed.types import Array
 
-_CONVERGED = 1e-11
+_LAST = 1e-6  # of a step: what is left is its square
 _MOST_STEPS = 30
 
 
@@ -28,23 +28,27 @@ class Coefficients(NamedTuple):
 
 def distort(x: Array, y: Array, by: Coefficients) -> tuple[Array, Array]:
     """Returns where the lens puts the points x, y of the pinhole's image."""
-    r2, xy = x * x + y * y, x * y
-    radial = 1.0 + r2 * (by.k1 + r2 * (by.k2 + r2 * by.k3))
-    return (
-        x * radial + 2.0 * by.p1 * xy + by.p2 * (r2 + 2.0 * x * x),
-        y * radial + by.p1 * (r2 + 2.0 * y * y) + 2.0 * by.p2 * xy,
-    )
+    return expanded(x, y, by)[:2]
 
 
 def slopes(x: Array, y: Array, by: Coefficients) -> tuple[Array, Array, Array]:
     """Returns ∂x'/∂x, ∂y'/∂y and ∂x'/∂y = ∂y'/∂x of `distort`."""
-    r2 = x * x + y * y
+    return expanded(x, y, by)[2:]
+
+
+def expanded(x: Array, y: Array, by: Coefficients) -> tuple[Array, Array, Array, Array, Array]:
+    """Returns what `distort` and `slopes` do."""
+    x2, y2, xy = x * x, y * y, x * y
+    r2 = x2 + y2
     radial = 1.0 + r2 * (by.k1 + r2 * (by.k2 + r2 * by.k3))
-    bend = 2.0 * (by.k1 + r2 * (2.0 * by.k2 + 3.0 * r2 * by.k3))
+    bend = 2.0 * by.k1 + r2 * (4.0 * by.k2 + 6.0 * by.k3 * r2)
+    p1x, p1y, p2x, p2y = 2.0 * by.p1 * x, 2.0 * by.p1 * y, 2.0 * by.p2 * x, 2.0 * by.p2 * y
     return (
-        radial + bend * x * x + 2.0 * by.p1 * y + 6.0 * by.p2 * x,
-        radial + bend * y * y + 6.0 * by.p1 * y + 2.0 * by.p2 * x,
-        bend * x * y + 2.0 * by.p1 * x + 2.0 * by.p2 * y,
+        x * radial + p1x * y + by.p2 * (r2 + 2.0 * x2),
+        y * radial + by.p1 * (r2 + 2.0 * y2) + p2x * y,
+        radial + bend * x2 + p1y + 3.0 * p2x,
+        radial + bend * y2 + 3.0 * p1y + p2x,
+        bend * xy + p1x + p2y,
     )
 
 
@@ -58,13 +62,12 @@ def undistort(
     u, v = (x, y) if start is None else start
     with np.errstate(all="ignore"):
         for _ in range(_MOST_STEPS):
-            at_x, at_y = distort(u, v, by)
-            off_x, off_y = at_x - x, at_y - y
-            if max(np.max(np.abs(off_x), initial=0.0), np.max(np.abs(off_y), initial=0.0)) < _CONVERGED:
+            at_x, at_y, xx, yy, xy = expanded(u, v, by)
+            off_x, off_y, det = at_x - x, at_y - y, xx * yy - xy * xy
+            by_u, by_v = (yy * off_x - xy * off_y) / det, (xx * off_y - xy * off_x) / det
+            u, v = u - by_u, v - by_v
+            if max(np.abs(by_u).max(initial=0.0), np.abs(by_v).max(initial=0.0)) < _LAST:
                 return u, v
-            xx, yy, xy = slopes(u, v, by)
-            det = xx * yy - xy * xy
-            u, v = u - (yy * off_x - xy * off_y) / det, v - (xx * off_y - xy * off_x) / det
         lost = ~(np.hypot(*np.subtract(distort(u, v, by), (x, y))) < 1e-9)
     return np.where(lost, np.nan, u), np.where(lost, np.nan, v)
 
