@@ -156,7 +156,8 @@ class Lens:
 
         column, row = self._border()
         x, y = (column - self.cx) / self.fx, (row - self.cy) / self.fy
-        told = f"camera distortion {self.coefficients}"
+        given = (f"{name} {value:g}" for name, value in self.coefficients._asdict().items() if value)
+        told = f"camera distortion ({', '.join(given)})"
         fold = folds_at(x, y, self.coefficients)
         if fold is not None:
             at = f"column {column[fold]:g}, row {row[fold]:g}"
