@@ -102,7 +102,14 @@ def ends(pid: int) -> bool:
         {"pan": TRACKING, "latency": 0.0, "mount": [0.2, 0.1, 0.3]},
         {**FAULTS, "pan": TRACKING, "latency": 0.35},
         {**FAULTS, "rate": 200.0, "latency": 0.003, "height": 16},
-        {"exposure": 0.02, "readout": 0.01, "read_noise": 0.03, "k1": -0.1, "tilt_deg": 3.0, "pan": TRACKING},
+        {
+            "exposure": 0.003,
+            "readout": 0.001,
+            "read_noise": 0.03,
+            "k1": -0.02,
+            "tilt_deg": 3.0,
+            "fov_deg": 120,
+        },
     ],
 )
 def test_both_ways_tell_the_same_at_the_same_time(block: dict[str, Any]) -> None:
