@@ -63,7 +63,7 @@ def _status(options: Options) -> int:
             return BUS
         except HilbedError as error:
             print(error, file=sys.stderr)
-            return BROKEN if options.command in (_run, _sweep, _paper, _bench) else REFUSED
+            return BROKEN if options.command in (_run, _sweep, _paper, _bench, _frames, _vision) else REFUSED
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -88,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
     run = _command(commands, "run", _run, "run a scenario and judge it")
     _add_scenario(run)
     run.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
+    _add_detector(run)
     run.add_argument("--out", type=Path, metavar="DIR", help="run folder (runs/<scenario>-<seed>)")
     run.add_argument("--force", action="store_true", help="replace an existing run folder")
     run.add_argument("--json", action="store_true", help="print verdict.json on stdout and nothing else")
@@ -109,6 +110,32 @@ def _parser() -> argparse.ArgumentParser:
     paper.add_argument("--ideal", action="store_true", help="leave the twins on the bench out")
     paper.add_argument("--seeds", type=int, metavar="N", help="runs a scenario behind tables of final poses")
     paper.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
+
+    frames = _command(commands, "frames", _frames, "render frames with truth into a dataset")
+    _add_scenario(frames)
+    frames.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder of the dataset")
+    frames.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
+    frames.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
+    frames.add_argument("--force", action="store_true", help="replace another dataset")
+
+    vision = _command(commands, "vision", _vision, "score a detector on rendered frames, or on a dataset")
+    vision.add_argument(
+        "scenario", metavar="SCENARIO|DATASET|FRAMES",
+        help="a scenario, a folder of hilbed frames; or frames without truth, of which the detections are "
+        "printed: a folder of images, a video, a camera's index or URL, a run folder",
+    )  # fmt: skip
+    _add_frames(vision)
+    _add_settings(vision)
+    _add_detector(vision)
+    vision.add_argument("-n", type=int, dest="count", metavar="N", help="number of frames (200)")
+    vision.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
+    vision.add_argument("--out", type=Path, metavar="DIR", help="folder of page and numbers (runs/vision-…)")
+    vision.add_argument("--vary", metavar="PATH=V1,V2", help="frames with each value, in one score")
+    vision.add_argument("--sweep", metavar="PATH=V1,V2", help="whole runs with each value instead")
+    vision.add_argument("--seeds", metavar="A..B", help="seeds of the runs of --sweep (the scenario's)")
+    vision.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
+    vision.add_argument("--force", action="store_true", help="replace what an earlier command has written")
+    vision.add_argument("--json", action="store_true", help="print vision.json on stdout and nothing else")
 
     _command(commands, "list", _list, "list the bundled scenarios")
     check = _command(commands, "check", _check, "validate a scenario and print every error with its line")
@@ -152,6 +179,23 @@ def _add_settings(parser: _Parser) -> None:
     )  # fmt: skip
 
 
+def _add_detector(parser: _Parser) -> None:
+    text = "of every camera: a kind, package.module:Class, file.py or file.py:Class"
+    parser.add_argument("--detector", metavar="DETECTOR", help=text)
+
+
+def _add_frames(parser: _Parser) -> None:
+    """Adds what is to be known of frames that are not rendered."""
+    frames = parser.add_argument_group("frames without truth")
+    frames.add_argument("--like", metavar="SCENARIO", help="take detector, beacons and camera of a scenario")
+    frames.add_argument("--calibration", type=Path, metavar="FILE", help="of the camera, as OpenCV writes it")
+    frames.add_argument("--fov-deg", type=float, metavar="DEGREES", help="of a camera without calibration")
+    frames.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="of unstamped images (30)")
+    frames.add_argument(
+        "--timeout", type=float, default=5.0, metavar="S", help="for each frame of a live camera (5)"
+    )
+
+
 def _run(options: Options) -> int:
     from hilbed.commands import run
 
@@ -170,6 +214,18 @@ def _paper(options: Options) -> int:
 
     asked = Wanted(options.out, options.jobs, options.ideal, options.seeds, options.force)
     return paper(options.paper, asked)
+
+
+def _frames(options: Options) -> int:
+    from hilbed.vision_kit.frames import frames
+
+    return frames(options)
+
+
+def _vision(options: Options) -> int:
+    from hilbed.vision_kit.command import vision
+
+    return vision(options)
 
 
 def _list(_: Options) -> int:

@@ -41,12 +41,14 @@ def _loaded(options: argparse.Namespace) -> Loaded:
     settings = list(options.settings)
     if options.record is not None:
         settings.append(f"record={options.record}")
-    loaded = load(options.scenario, settings, options.seed)
+    loaded = load(options.scenario, settings, options.seed, options.detector)
     if options.realtime and loaded.scenario.realtime is None:
         settings.append("realtime={}")
     asked = Asked(options.interface, options.channel, options.bitrate)
     settings += bus_settings(asked, loaded.scenario.bus)
-    return load(options.scenario, settings, options.seed) if settings != options.settings else loaded
+    if settings == options.settings:
+        return loaded
+    return load(options.scenario, settings, options.seed, options.detector)
 
 
 def _default_folder(loaded: Loaded) -> Path:

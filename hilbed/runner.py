@@ -20,6 +20,7 @@ from hilbed.build.elsewhere import check_armed
 from hilbed.clock import SECOND, nanos, seconds
 from hilbed.cost import Cost, perf_counter
 from hilbed.pacer import Pacer
+from hilbed.ports import Sensor
 from hilbed.record.columns import Columns
 from hilbed.record.folder import DBC, RunFolder
 from hilbed.record.hashing import BusDigest, run_hash, signals_hash
@@ -29,6 +30,8 @@ from hilbed.record.row import Sink
 from hilbed.scenario.load import Loaded, resolved
 from hilbed.scenario.model import Scenario
 from hilbed.scenario.own_files import pack
+from hilbed.sensors.camera import Camera
+from hilbed.sensors.troubles import Troubles
 from hilbed.tally import counts_of
 from hilbed.types import BusError, Cycle, Diverged, HilbedError, Interrupted, Nanos
 from hilbed.versions import versions
@@ -153,14 +156,32 @@ def _pacer(scenario: Scenario, cost: Cost) -> Pacer | None:
 
 
 def _parts(bench: Bench, scenario: Scenario, pacer: Pacer | None) -> dict[str, Any]:
-    """Returns what verdict.json says of counters, of a run in real time, of a bus that others are on."""
+    """Returns what verdict.json says of counters, detectors, a run in real time, a bus that others are on."""
     counted = {"estimator": counts_of(bench.rig.estimator), "controller": counts_of(bench.rig.controller)}
-    sensors = zip(scenario.sensors, bench.rig.sensors, strict=False)  # a recorded robot brings its own
-    counted |= {f"sensors.{name}": counts for name, sensor in sensors if (counts := counts_of(sensor))}
-    parts = {"counts": {name: _numbers(counts) for name, counts in counted.items()}, **bench.account()}
+    sensors = dict(zip(scenario.sensors, bench.rig.sensors, strict=False))  # a recorded robot brings its own
+    counted |= {
+        f"sensors.{name}": counts for name, sensor in sensors.items() if (counts := counts_of(sensor))
+    }
+    foreign = _foreign(sensors)
+    parts = {
+        "counts": {name: _numbers(counts) for name, counts in counted.items()},
+        "reproducible": pacer is None and all(troubles.reproducible for troubles in foreign.values()),
+        **bench.account(),
+    }
+    if foreign:
+        parts["detectors"] = {name: troubles.lines() for name, troubles in foreign.items()}
     if pacer is not None:
         parts["realtime"] = pacer.ledger.summary(pacer.period, bench.late())
     return parts
+
+
+def _foreign(sensors: Mapping[str, Sensor]) -> dict[str, Troubles]:
+    """Returns what foreign detectors did wrong, by the camera's name."""
+    return {
+        name: sensor.troubles
+        for name, sensor in sensors.items()
+        if isinstance(sensor, Camera) and sensor.troubles.foreign
+    }
 
 
 def _numbers(counts: Mapping[str, float]) -> dict[str, float | None]:

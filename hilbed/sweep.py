@@ -22,11 +22,12 @@ MOST_SEEDS = 100_000
 
 
 class Job(NamedTuple):
-    """One run of a sweep."""
+    """One run of a sweep; detector: as for `hilbed run`."""
 
     scenario: str
     settings: Settings
     seed: int
+    detector: str | None = None
 
 
 class Result(NamedTuple):
@@ -57,20 +58,25 @@ def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, 
         raise ScenarioError(f"--jobs {jobs}: at least one process has to run")
     variants = list(_variants(settings))
     for variant in variants:
-        _check_alone(load(scenario, variant).scenario)
+        check_alone(load(scenario, variant).scenario)
     numbers = parse_seeds(seeds)
     todo = [Job(scenario, variant, seed) for variant in variants for seed in numbers]
-    workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
-        results = run_all(todo, pool)
+    results = side_by_side(todo, jobs)
     tables = {variant: tabulate([r for r in results if r.job.settings == variant]) for variant in variants}
     with quiet_pipe():
         print(as_text(tables, results) if not as_json else as_json_text(tables, results))
     return 0 if all(result.status == 0 for result in results) else 1
 
 
-def _check_alone(scenario: Scenario) -> None:
+def side_by_side(todo: Sequence[Job], jobs: int | None) -> list[Result]:
+    """Runs jobs in `jobs` processes, else one a processor, and returns the results in their order."""
+    workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
+        return run_all(todo, pool)
+
+
+def check_alone(scenario: Scenario) -> None:
     """Raises ScenarioError where runs side by side would be in each other's way."""
     if scenario.bus.carried:
         raise ScenarioError(
@@ -99,6 +105,15 @@ def _variants(settings: Sequence[str]) -> Iterator[Settings]:
         path, equals, values = setting.partition("=")
         choices.append([f"{path}{equals}{value}" for value in split_values(values)])
     yield from product(*choices)
+
+
+def listed(option: str, text: str) -> tuple[str, list[str]]:
+    """Returns path and values of an option's `PATH=V1,V2`; raises ScenarioError."""
+    path, equals, values = text.partition("=")
+    found = split_values(values)
+    if not path or not equals or not all(found):
+        raise ScenarioError(f"{option} {text}: give PATH=V1,V2,…, such as sensors.camera.read_noise=0,0.02")
+    return path, found
 
 
 def split_values(text: str) -> list[str]:
@@ -142,7 +157,7 @@ def run_job(job: Job) -> Result:
     """Runs one job without writing anything."""
     from hilbed.runner import perform
 
-    outcome = perform(load(job.scenario, [*job.settings, "record=none"], job.seed), None)
+    outcome = perform(load(job.scenario, [*job.settings, "record=none"], job.seed, job.detector), None)
     return Result(job, outcome.status, dict(outcome.verdict))
 
 

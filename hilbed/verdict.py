@@ -156,7 +156,17 @@ def _counts(part: Mapping[str, Mapping[str, float | None]]) -> str:
     return "\n".join(told)
 
 
+def _detectors(part: Mapping[str, Sequence[str]]) -> str:
+    return "\n".join(f"detector of {name}: {line}" for name, lines in part.items() for line in lines)
+
+
+def _reproducible(part: bool) -> str:
+    return "" if part else "not reproducible: the wall clock had a say in this run"
+
+
 _PARTS: dict[str, Callable[[Any], str]] = {
+    "detectors": _detectors,
+    "reproducible": _reproducible,
     "counts": _counts,
     "nodes": _nodes,
     "realtime": _realtime,

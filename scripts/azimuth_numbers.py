@@ -17,6 +17,7 @@ from hilbed.types import Array, ScenarioError
 from hilbed.vision.detect import ColourDetector
 from hilbed.vision.lens import Lens
 from hilbed.vision.render import BulletRenderer, Scenery
+from hilbed.vision.seams import Shot, Viewpoint
 
 COLOURS = ("red", "orange", "green", "azure", "magenta", "yellow")
 NEAREST, FARTHEST = 2.0, 8.0
@@ -41,9 +42,9 @@ def measure(lens: Lens, frames: int) -> tuple[Array, float, float]:
             beacons = scene(lens, rng)
             camera, detector = BulletRenderer(lens, Scenery(beacons), cost), ColourDetector(lens, beacons)
         x, y, yaw = rng.uniform(-0.05, 0.05, 3).tolist()
-        image = camera.render(x, y, rng.uniform(0.15, 0.5), yaw)
+        shot = Shot(camera.render(Viewpoint(x, y, rng.uniform(0.15, 0.5), yaw), 0), 0, lens)
         start = perf_counter()
-        detections = detector.detect(image)
+        detections = detector.detect(shot)
         detecting += perf_counter() - start
         for found in detections:
             assert found.beacon is not None
@@ -70,7 +71,7 @@ def main() -> None:
     parser.add_argument("frames", type=int, nargs="?", default=400)
     given = parser.parse_args()
     try:
-        lens = Lens(given.width, given.height, radians(given.fov_deg))
+        lens = Lens.of_fov(given.width, given.height, radians(given.fov_deg))
     except ScenarioError as error:
         parser.error(str(error))
     rows, render, detect = measure(lens, max(given.frames, FRAMES_A_SCENE))

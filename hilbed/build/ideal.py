@@ -33,7 +33,7 @@ def ideal(loaded: Loaded, witness: Witness, cost: Cost, separate: bool, pacer: P
     effects = Effects(())
     schedule = schedule_of(scenario, (), effects)
     with ExitStack() as closing:
-        scene = Scene(spec.beacons, effects, witness, cost, separate)
+        scene = Scene(spec.beacons, effects, witness, cost, separate, spec.scenery)
         sensors = make_sensors(scenario, scene, closing)
         close = closing.pop_all().close
     plant = KinematicPlant(start, vehicle, sensors, lambda t: schedule.apply(t, Nowhere()))

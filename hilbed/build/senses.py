@@ -11,7 +11,7 @@ from hilbed.cost import Cost
 from hilbed.effects import Effects
 from hilbed.ports import Sensor, Witness
 from hilbed.scenario.model import Scenario
-from hilbed.scene import BeaconSpec
+from hilbed.scene import BeaconSpec, ScenerySpec
 from hilbed.sensors.direct import Direct, Post
 from hilbed.sensors.landmarks import bearing, range_bearing
 from hilbed.sensors.position import position
@@ -33,6 +33,7 @@ class Scene(NamedTuple):
     witness: Witness
     cost: Cost
     separate: bool = False
+    scenery: ScenerySpec = ScenerySpec()
 
 
 def make_sensors(scenario: Scenario, scene: Scene, closing: ExitStack) -> tuple[LiveSensor, ...]:
@@ -42,7 +43,8 @@ def make_sensors(scenario: Scenario, scene: Scene, closing: ExitStack) -> tuple[
     """
     sensors = []
     for name, spec in scenario.sensors.items():
-        post = Post(name, rng.stream(scenario.seed, f"sensors.{name}"), scene.effects, scene.witness)
+        noise = rng.stream(scenario.seed, f"sensors.{name}")
+        post = Post(name, noise, scene.effects, scene.witness, scenario.seed)
         sensor = SENSORS[spec.kind](spec, post, scene)
         closing.callback(sensor.close)
         sensors.append(sensor)
@@ -59,8 +61,10 @@ def kinds_of(scenario: Scenario) -> dict[str, int]:
 
 def _camera(spec: Any, post: Post, scene: Scene) -> LiveSensor:
     from hilbed.sensors.camera import Camera, open_eye
+    from hilbed.sensors.eye import Setting
 
-    eye = open_eye(spec, scene.beacons, scene.cost, scene.separate)
+    setting = Setting(tuple(scene.beacons), scene.scenery, post.seed, post.name)
+    eye = open_eye(spec, setting, scene.cost, scene.separate)
     return Camera(spec, eye, post.rng, post.effects, post.witness)
 
 

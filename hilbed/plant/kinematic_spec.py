@@ -9,7 +9,7 @@ from pydantic import Field
 
 from hilbed.plant.kinematic import Vehicle
 from hilbed.plant.kinematics import INTEGRATORS, Twist, TwistNoise
-from hilbed.scene import BeaconSpec
+from hilbed.scene import BeaconSpec, SceneryBlock, ScenerySpec
 from hilbed.spec import Listed, NonNegative, Spec
 from hilbed.types import Command, Rng
 
@@ -17,14 +17,15 @@ from hilbed.types import Command, Rng
 class KinematicSpec(Spec):
     """How an ideal robot moves, and the noise on it, drawn once a control period and held over it.
 
-    beacons: what its sensors see; start_std (m, m, rad): how wrong the estimator is told the start, standard
-    deviations, drawn once; integrator, and its steps a period; command_noise: standard deviations added to
-    the command (m/s, and rad/s or rad of steering) before the robot's limits; twist_noise: σ_t (m per m) and
-    σ_D (rad per m).
+    beacons, scenery: what its sensors see; start_std (m, m, rad): how wrong the estimator is told the
+    start, standard deviations, drawn once; integrator, and its steps a period; command_noise: standard
+    deviations added to the command (m/s, and rad/s or rad of steering) before the robot's limits;
+    twist_noise: σ_t (m per m) and σ_D (rad per m).
     """
 
     kind: Literal["kinematic"] = "kinematic"
     beacons: list[BeaconSpec] = []
+    scenery: SceneryBlock = ScenerySpec()
     start_std: Listed[tuple[NonNegative, NonNegative, NonNegative]] = (0.0, 0.0, 0.0)
     integrator: Literal["exact", "rk4", "euler"] = "exact"
     steps: Annotated[int, Field(ge=1, le=1000)] = 1

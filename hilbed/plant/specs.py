@@ -13,7 +13,7 @@ from hilbed.plant.encoder import EncoderSpec
 from hilbed.plant.gear import GEARS, Gear, GearSpec
 from hilbed.plant.motor import MOTORS, Motor, MotorSpec
 from hilbed.plant.supply import SupplySpec
-from hilbed.scene import BeaconSpec
+from hilbed.scene import BeaconSpec, SceneryBlock, ScenerySpec
 from hilbed.spec import Finite, Listed, NonNegative, Spec
 
 STEERING = "steering"
@@ -64,6 +64,7 @@ class SimulatedSpec(BulletSpec):
     supply: SupplySpec = SupplySpec()
     steering: SteeringSpec | None = None
     beacons: list[BeaconSpec] = []
+    scenery: SceneryBlock = ScenerySpec()
     start_std: Listed[tuple[NonNegative, NonNegative, NonNegative]] = (0.0, 0.0, 0.0)
 
     def machine(self, drive: str) -> Machine:

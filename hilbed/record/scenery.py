@@ -54,7 +54,7 @@ def _cone(beacon: BeaconSpec) -> fox.CylinderPrimitive:
         pose=_upright(*beacon.at, beacon.height / 2),
         size=fox.Vector3(x=width, y=width, z=beacon.height),
         bottom_scale=1.0,
-        top_scale=beacon.top_radius / beacon.foot_radius,
+        top_scale=beacon.upper_radius / beacon.foot_radius,
         color=fox.Color(r=red, g=green, b=blue, a=1.0),
     )
 

@@ -83,6 +83,7 @@ def _details(run: Run) -> str:
         + page.card(
             "Camera", page.shots(run), "detections are lines, beacons known by their number", wide=True
         )
+        + page.card("Frames without an answer of the detector", page.detectors(run), wide=True)
         + page.card("Frames by identifier", bus_table.frames(run), bus_table.NOTE, wide=True)
         + page.card("Metrics", page.metrics(run), wide=True)
         + page.card("Scenario", scenario, "resolved: every default written out", wide=True)

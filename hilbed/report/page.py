@@ -33,8 +33,8 @@ def banner(run: Run) -> str:
     away = [f"{name} {kind}" for name, kind in verdict.get("nodes", {}).items() if kind != "simulated"]
     drives = f'<p class="reason">drives: {escape(", ".join(away))}</p>' if away else ""
     facts = [
-        ("simulated", _number(verdict["sim_time"]), "s"),
-        ("wall time", _number(verdict["wall_time"]), "s"),
+        ("simulated", number(verdict["sim_time"]), "s"),
+        ("wall time", number(verdict["wall_time"]), "s"),
     ]
     if verdict.get("real_time_factor"):
         facts.append(("real time", f"{verdict['real_time_factor']:.1f}", "×"))
@@ -47,8 +47,12 @@ def banner(run: Run) -> str:
 
 
 def criteria(run: Run) -> str | None:
+    """Returns the table of a run's criteria, None without any."""
+    return criteria_table(run.verdict.get("criteria") or {})
+
+
+def criteria_table(entries: Mapping[str, Mapping[str, Any]]) -> str | None:
     """Returns the table of criteria, each with a bar of how much of its limit is used."""
-    entries = run.verdict.get("criteria") or {}
     if not entries:
         return None
     rows = "".join(_criterion(name, entry) for name, entry in entries.items())
@@ -60,10 +64,10 @@ def _criterion(name: str, entry: Mapping[str, Any]) -> str:
     upper = entry.get("bound", "max") == "max"
     used = 1.0 if value is None else _share(value, limit) if upper else _share(limit, value)
     kind, word = ("good", "pass") if entry["passed"] else ("bad", "fail")
-    shown = "none" if value is None else _number(value)
+    shown = "none" if value is None else number(value)
     return (
         f'<tr class="{kind}"><th>{escape(name)}</th><td class="number">{shown}</td>'
-        f'<td class="number limit">{"≤" if upper else "≥"} {_number(limit)}</td>'
+        f'<td class="number limit">{"≤" if upper else "≥"} {number(limit)}</td>'
         f'<td class="bar"><i style="width:{100 * used:.0f}%"></i></td><td class="word">{word}</td></tr>'
     )
 
@@ -104,14 +108,15 @@ def _shot(shot: Shot) -> str:
         + ("" if beacon is None else f'<text x="{x + 4:.1f}" y="12">{beacon}</text>')
         for x, beacon in zip(shot.pixels, shot.beacons, strict=True)
     )
-    picture = f'<image width="{width}" height="{height}" href="data:image/png;base64,{_base64(shot.png)}"/>'
+    picture = f'<image width="{width}" height="{height}" href="data:image/png;base64,{base64(shot.png)}"/>'
     return (
         f'<figure><svg role="img" aria-label="camera at {shot.t:.1f} s" viewBox="0 0 {width} {height}">'
         f"{picture}{lines}</svg><figcaption>t = {shot.t:.1f} s</figcaption></figure>"
     )
 
 
-def _base64(data: bytes) -> str:
+def base64(data: bytes) -> str:
+    """Returns data as a page can hold them."""
     return b64encode(data).decode()
 
 
@@ -128,7 +133,7 @@ def cost(run: Run) -> str | None:
         bar += f'<i style="width:{share:.2f}%;background:{colour}" title="{escape(name)}"></i>'
         rows += (
             f'<tr><th><i class="dot" style="background:{colour}"></i>{escape(name)}</th>'
-            f'<td class="number">{_number(value)} s</td><td class="number">{share:.1f} %</td></tr>'
+            f'<td class="number">{number(value)} s</td><td class="number">{share:.1f} %</td></tr>'
         )
     return f'<div class="stack">{bar}</div><table><tbody>{rows}</tbody></table>'
 
@@ -145,7 +150,7 @@ def metrics(run: Run) -> str | None:
 def _metric(name: str, value: float | None) -> str:
     metric = METRICS.get(name) or METRICS.get(name.rpartition(".")[2])
     about, unit = (metric.about, metric.unit) if metric else ("", "")
-    shown = "none" if value is None else f"{_number(value)} {unit}"
+    shown = "none" if value is None else f"{number(value)} {unit}"
     cells = f'<td class="number">{shown}</td><td class="about">{escape(about)}</td>'
     return f"<tr><th>{escape(name)}</th>{cells}</tr>"
 
@@ -154,12 +159,22 @@ def counts(run: Run) -> str | None:
     """Returns what estimator, controller and sensors have counted, and what that means."""
     rows = "".join(
         f'<tr><th>{escape(part)}</th><td>{escape(name)}</td><td class="number">'
-        f"{'none' if value is None else _number(value)}</td>"
+        f"{'none' if value is None else number(value)}</td>"
         f'<td class="about">{escape(ABOUT.get(name, ""))}</td></tr>'
         for part, found in (run.verdict.get("counts") or {}).items()
         for name, value in found.items()
     )
     return f'<table class="metrics"><tbody>{rows}</tbody></table>' if rows else None
+
+
+def detectors(run: Run) -> str | None:
+    """Returns what foreign detectors did wrong, None where they did nothing wrong."""
+    lines = [
+        f"{camera}: {line}"
+        for camera, found in (run.verdict.get("detectors") or {}).items()
+        for line in found
+    ]
+    return f"<pre>{escape(chr(10).join(lines))}</pre>" if lines else None
 
 
 def files(run: Run) -> str:
@@ -169,6 +184,8 @@ def files(run: Run) -> str:
     prints = "<br>".join(
         f"{key} <code>{escape(str(run.verdict.get(key, '')))}</code>" for key in ("hash", "signals_hash")
     )
+    if run.verdict.get("reproducible") is False:
+        prints += "<br>not reproducible: the wall clock had a say in this run"
     return f'<p class="files">{links}</p><p class="files">{prints}</p>'
 
 
@@ -208,6 +225,6 @@ _SURFACES = {
 }
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
     """Returns a number with four digits that mean something."""
     return f"{value:.4g}"

@@ -21,7 +21,7 @@ from hilbed.plant.chopper import Switched, periods
 from hilbed.plant.urdf import meshes
 from hilbed.problems import Problem, nearest
 from hilbed.robots import RobotSpec
-from hilbed.scenario import files, matches, sensing, steering
+from hilbed.scenario import detectors, files, matches, sensing, steering, surroundings
 from hilbed.scenario.bodies import body_of
 from hilbed.sensors import SensorSpec
 from hilbed.types import ScenarioError
@@ -29,9 +29,9 @@ from hilbed.types import ScenarioError
 Problems = Iterator[Problem]
 
 
-def across(blocks: Mapping[str, Any], folder: Path) -> list[Problem]:
-    """Returns every problem between the blocks that hold by themselves."""
-    known = {**blocks, "folder": folder}
+def across(blocks: Mapping[str, Any], folder: Path, given: str | None = None) -> list[Problem]:
+    """Returns every problem between the blocks that hold by themselves; given: by `--detector`."""
+    known = {**blocks, "folder": folder, "given": given}
     found: list[Problem] = []
     for check in CHECKS:
         needs = list(signature(check).parameters)
@@ -253,5 +253,5 @@ def _judged(criteria: Mapping[str, CriterionSpec], robot: RobotSpec) -> Problems
 CHECKS: tuple[Callable[..., Problems], ...] = (
     _periods, _ticks, _nodes, _joined, _beacons, _start, _path,
     _files, _body, _recording, _guidance, _recorded, _disturbed, _bus_faults, _judged,
-    *sensing.CHECKS, *matches.CHECKS, *steering.CHECKS,
+    detectors.allowed, *sensing.CHECKS, *matches.CHECKS, *steering.CHECKS, *surroundings.CHECKS,
 )  # fmt: skip

@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from hilbed import problems, yaml12
-from hilbed.scenario import bundled, checks, overlay, tables
+from hilbed.scenario import bundled, checks, detectors, overlay, tables
 from hilbed.scenario.model import Scenario
 from hilbed.types import ScenarioError
 
@@ -24,10 +24,13 @@ class Loaded(NamedTuple):
     title: str
 
 
-def load(name: str, settings: Sequence[str] = (), seed: int | None = None) -> Loaded:
-    """Reads a bundled scenario or a file, with `--set` and `--seed` laid over it.
+def load(
+    name: str, settings: Sequence[str] = (), seed: int | None = None, detector: str | None = None
+) -> Loaded:
+    """Reads a bundled scenario or a file, with `--set`, `--seed` and `--detector` laid over it.
 
-    Raises ScenarioError with every problem, one a line.
+    detector: of every camera; code that is named so may lie anywhere, the scenario's own may not. Raises
+    ScenarioError with every problem, one a line.
     """
     short, path = bundled.find(name)
     text = _text(path)
@@ -36,7 +39,11 @@ def load(name: str, settings: Sequence[str] = (), seed: int | None = None) -> Lo
     for setting in [*settings, *([] if seed is None else [f"seed={seed}"])]:
         places.overlaid(overlay.apply(data, setting), setting)
     tables.localise(data, path.parent)
-    return Loaded(short, _validated(data, places, path.parent), path.parent, bundled.title(text))
+    if detector is not None:
+        detectors.give(data, detector)
+    scenario = _validated(data, places, path.parent, detector)
+    scenario = scenario.model_copy(update={"sensors": detectors.localise(scenario.sensors, path.parent)})
+    return Loaded(short, scenario, path.parent, bundled.title(text))
 
 
 def _text(path: Path) -> str:
@@ -46,7 +53,7 @@ def _text(path: Path) -> str:
         raise ScenarioError(f"{path}: cannot be read: {error}") from None
 
 
-def _validated(data: dict[str, Any], places: problems.Places, folder: Path) -> Scenario:
+def _validated(data: dict[str, Any], places: problems.Places, folder: Path, detector: str | None) -> Scenario:
     found: list[problems.Problem] = []
     try:
         scenario = Scenario.model_validate(data)
@@ -54,7 +61,7 @@ def _validated(data: dict[str, Any], places: problems.Places, folder: Path) -> S
     except ValidationError as error:
         found = problems.from_validation(error, Scenario)
         valid = _valid_blocks(data)
-    found += checks.across(valid, folder)
+    found += checks.across(valid, folder, detector)
     if found:
         raise ScenarioError(places.tell(found))
     return scenario

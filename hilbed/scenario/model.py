@@ -16,6 +16,7 @@ from hilbed.plant import PlantSpec
 from hilbed.robots import DiffDriveSpec, RobotSpec
 from hilbed.sensors import SensorSpec
 from hilbed.spec import Positive, Spec, Word
+from hilbed.vision.judging import VisionSpec
 
 ByKind = Field(discriminator="kind")
 
@@ -61,5 +62,6 @@ class Scenario(Spec):
     disturbances: list[Annotated[DisturbanceSpec, ByKind]] = []
     criteria: dict[str, CriterionSpec] = {}
     realtime: RealtimeSpec | None = None
+    vision: VisionSpec | None = None
     record: Literal["all", "signals", "none"] = "all"
     versions: dict[str, str] = {}

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from hilbed.plant.urdf import meshes
 from hilbed.record.folder import FILES
-from hilbed.scenario import files, tables
+from hilbed.scenario import detectors, files, tables
 from hilbed.scenario.model import Scenario
 from hilbed.types import ScenarioError
 
@@ -29,11 +29,14 @@ def pack(scenario: Scenario, folder: Path) -> Packed:
     own = [(key, name) for key, name in files.named(scenario.robot, scenario.plant) if files.is_own(name)]
     root = folder.resolve()
     own_tables = tables.own(scenario.nodes, root)
-    found = own_tables | {path for _, name in own for path in _with_meshes(name, root)}
+    own_code = detectors.own(scenario.sensors)
+    found = own_tables | own_code | {path for _, name in own for path in _with_meshes(name, root)}
     if all(path.is_relative_to(root / FILES) for path in found):
         root /= FILES  # a run of a run does not bury its files deeper
     places = {path: _place(path, root) for path in own_tables}
     changes: dict[str, object] = {"nodes": tables.moved(scenario.nodes, places)} if places else {}
+    if own_code:
+        changes["sensors"] = detectors.replaced(scenario.sensors, lambda path: Path(_place(path, root)))
     for (block, key), name in own:
         place = _place(files.resolve(name, folder), root)
         changes[block] = getattr(scenario, block).model_copy(update={key: place})
@@ -52,6 +55,8 @@ def _with_meshes(name: str, folder: Path) -> Iterator[Path]:
 
 
 def _place(path: Path, root: Path) -> str:
+    if not path.is_relative_to(root):  # a detector given by `--detector`
+        return f"{FILES}/{path.name}"
     return f"{FILES}/{path.relative_to(root).as_posix()}"
 
 

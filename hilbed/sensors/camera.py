@@ -3,49 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import nan, pi, radians
+from math import nan, pi
 from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
 from hilbed.angles import wrap
+from hilbed.clock import nanos
 from hilbed.cost import Cost, perf_counter
 from hilbed.effects import Effects
 from hilbed.ports import Witness
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.delivery import Delivery, DeliverySpec
-from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Ticket
+from hilbed.sensors.exposure import Exposure, Moment
+from hilbed.sensors.eye import Eye, Finding, Glimpse, LocalEye, Setting, Ticket
 from hilbed.sensors.faults import misses, noisy, spurious
+from hilbed.sensors.imaging import ImagingSpec
 from hilbed.sensors.pan import make_pan
 from hilbed.sensors.pan_spec import FixedSpec, PanSpec
+from hilbed.sensors.troubles import Troubles
 from hilbed.spec import Finite, Fraction, Listed, NonNegative, Positive
 from hilbed.types import Image, Nanos, Reading, Rng, Snapshot, Truth
+from hilbed.vision.detectors import ColourSpec, DetectorSpec, identified, make_detector, patience
 from hilbed.vision.egl import LARGEST_FRAME
-from hilbed.vision.lens import LARGEST, SMALLEST, Lens
 from hilbed.vision.seams import Detection
 from hilbed.vision.truth import SPURIOUS
 
-Size = Annotated[int, Field(ge=SMALLEST, le=LARGEST)]
 
-
-class CameraSpec(DeliverySpec):
+class CameraSpec(ImagingSpec, DeliverySpec):
     """A camera that measures azimuths of beacons in rendered frames.
 
-    renderer: tiny (processor) or egl (at most 1024×768); ground: draw it, for pictures, at three times the
-    cost; width, height: pixels, 16 to 4096; fov_deg: horizontal field of view, degrees, inside (0, 180);
-    mount: m, the optical centre on the pan axis in the robot's frame; identity: colour or anonymous; noise:
-    rad, standard deviation added to each azimuth; missed: probability for each detection; spurious: mean
-    number of false azimuths a frame.
+    renderer: tiny (processor) or egl (at most 1024×768); ground: a grey floor where the scenery has none;
+    mount: m, the optical centre on the pan axis in the robot's frame; detector: a kind, or somebody's
+    code; identity: colour or anonymous; noise: rad, standard deviation added to each azimuth; missed:
+    probability for each detection; spurious: mean number of false azimuths a frame. What it takes to expose
+    and to read out a frame is within latency and the time between frames.
     """
 
     kind: Literal["camera"] = "camera"
     renderer: Literal["tiny", "egl"] = "tiny"
     ground: bool = False
-    width: Size = 640
-    height: Size = 64
-    fov_deg: Annotated[float, Field(gt=0, lt=180)] = 90.0
     mount: Listed[tuple[Finite, Finite, Positive]] = (0.0, 0.0, 0.3)
     pan: PanSpec = FixedSpec()
+    detector: DetectorSpec = ColourSpec()
     identity: Literal["colour", "anonymous"] = "colour"
     noise: Annotated[NonNegative, Field(le=pi)] = 0.0
     missed: Fraction = 0.0
@@ -58,22 +58,40 @@ class CameraSpec(DeliverySpec):
             raise ValueError(f"renderer egl draws at most {width}×{height} pixels; tiny draws any size")
         return self
 
-    @property
-    def lens(self) -> Lens:
-        return Lens(self.width, self.height, radians(self.fov_deg))
+    @model_validator(mode="after")
+    def _in_time(self) -> Self:
+        span = self.exposure + self.readout
+        if span > 1.0 / self.rate:
+            raise ValueError(f"exposure and readout take {span:g} s, but a frame only {1 / self.rate:g} s")
+        if span / 2.0 > self.latency:
+            raise ValueError(
+                f"latency {self.latency:g} s counts from the middle of the exposure, which ends "
+                f"{span / 2:g} s later"
+            )
+        return self
 
     def kinds(self) -> dict[str, int]:
         """Returns what it measures, with the number of components."""
         return {"azimuth": 1}
 
 
-class Exposure(NamedTuple):
-    """A frame under way: at a pan angle (rad, robot's frame), with a mean number of false detections."""
+class Opened(NamedTuple):
+    """A frame that is being exposed, its middle at t.
+
+    pan: then, rad, robot's frame; blind: it will show nothing; false: mean number of false detections.
+    """
 
     t: Nanos
     delivered: Nanos
     pan: float
+    blind: bool
     false: float
+
+
+class UnderWay(NamedTuple):
+    """A frame that has been exposed, and how to get it."""
+
+    frame: Opened
     ticket: Ticket
 
 
@@ -93,46 +111,71 @@ class Camera:
         self._names = names(spec, eye.beacons)
         self._pan = make_pan(spec.pan, self._names)
         self._delivery = Delivery(spec, rng)
-        self._under_way: Exposure | None = None
+        self._half = nanos((spec.exposure + spec.readout) / 2.0)
+        self._moments: list[Moment] = []
+        self._opened: Opened | None = None
+        self._under_way: UnderWay | None = None
+        self.troubles = Troubles(spec.detector)
 
     @property
     def due(self) -> Nanos:
-        """When the next frame is to be exposed."""
-        return self._delivery.due
+        """When it is to be told where the robot is: as an exposure begins, in its middle, as it ends."""
+        if self._opened is not None:
+            return self._opened.t + self._half
+        return self._delivery.due if self._moments else max(0, self._delivery.due - self._half)
 
     def sample(self, truth: Truth) -> None:
-        """Exposes a frame at truth.t, unless the camera is blind, and sends its azimuths on their way."""
-        self.flush()
-        pan = self._pan.turn(truth.t)
-        delivered = self._delivery.expose(truth.t)
-        if self._effects.blind:
+        """Takes down where the robot is and exposes a frame, unless blind, once that is known to its end."""
+        if not self._moments:
+            self.flush()
+        self._moments.append(Moment(truth.t, truth.pose, self._pan.turn(truth.t)))
+        if self._opened is None and truth.t >= self._delivery.due:
+            self._opened = self._open(truth.t)
+        if self._opened is not None and truth.t >= self._opened.t + self._half:
+            self._expose(self._opened)
+
+    def _open(self, t: Nanos) -> Opened:
+        blind, false = self._effects.blind, self._spec.spurious + self._effects.spurious
+        return Opened(t, self._delivery.expose(t), self._moments[-1].pan, blind, false)
+
+    def _expose(self, frame: Opened) -> None:
+        """Sends the azimuths of a frame on their way."""
+        exposure = Exposure(frame.t, tuple(self._moments))
+        self._opened = None
+        self._moments.clear()
+        if frame.blind:
             self._pan.saw([])
-            return
-        false = self._spec.spurious + self._effects.spurious
-        self._under_way = Exposure(truth.t, delivered, pan, false, self._eye.look(truth.pose, pan))
+        else:
+            self._under_way = UnderWay(frame, self._eye.look(exposure))
 
     def read(self, t: Nanos) -> list[Reading]:
         """Returns the azimuths delivered up to and including t since the last call, oldest first."""
-        if self._under_way is not None and self._under_way.delivered <= t:
+        if self._under_way is not None and self._under_way.frame.delivered <= t:
             self.flush()
         return self._delivery.read(t)
 
     def flush(self) -> None:
         """Takes the frame that is under way, if any, from the eye, and tells the witness; once at the end."""
         if self._under_way is not None:
-            exposure, glimpse = self._under_way, self._under_way.ticket()
+            frame, ticket = self._under_way
+            glimpse = ticket()
             self._under_way = None
-            self._develop(exposure, glimpse)
+            self._develop(frame, glimpse)
+
+    def counts(self) -> dict[str, float]:
+        """Returns what a foreign detector did with its frames; nothing of a built-in one."""
+        return self.troubles.counts() if self.troubles.foreign else {}
 
     def close(self) -> None:
         """Gives back what the eye holds; a frame under way is lost."""
         self._under_way = None
         self._eye.close()
 
-    def _develop(self, exposure: Exposure, glimpse: Glimpse) -> None:
+    def _develop(self, frame: Opened, glimpse: Glimpse) -> None:
         """Sends a frame's azimuths on their way, with all that goes wrong with them."""
         start = perf_counter()
-        t, delivered, pan, false, _ = exposure
+        t, delivered, pan, _, false = frame
+        self.troubles.note(t, glimpse.trouble)
         findings = self._faulty(glimpse.findings, false)
         self._pan.saw([finding.detection for finding in findings])
         readings = [azimuth(t, delivered, pan, finding.detection) for finding in findings]
@@ -171,25 +214,23 @@ def snapshot(t: Nanos, image: Image, pan: float, findings: Sequence[Finding]) ->
 
 
 def names(spec: CameraSpec, beacons: Sequence[BeaconSpec]) -> list[int | None]:
-    """Returns by which index each beacon is recognised: None if anonymous or of a colour that another has."""
-    colours = [beacon.colour for beacon in beacons]
-    known = spec.identity == "colour"
-    return [k if known and colours.count(colour) == 1 else None for k, colour in enumerate(colours)]
+    """Returns by which index each beacon is recognised: None if anonymous, or not to be told from another."""
+    known = identified(spec.detector, beacons)
+    return [None] * len(known) if spec.identity == "anonymous" else known
 
 
-def open_eye(spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, separate: bool = False) -> Eye:
+def open_eye(spec: CameraSpec, setting: Setting, cost: Cost, separate: bool = False) -> Eye:
     """Returns the eye that a scenario describes, in a process of its own if `separate`.
 
     Both see the same to the bit. Raises ScenarioError where the renderer does not work.
     """
     if separate:
-        from hilbed.sensors.remote import RemoteEye
+        from hilbed.sensors.remote import PATIENCE, RemoteEye
 
-        return RemoteEye(spec, beacons, cost)
-    from hilbed.vision.detect import ColourDetector
-    from hilbed.vision.render import BulletRenderer, Scenery
+        return RemoteEye(spec, setting, cost, PATIENCE + patience(spec.detector))
+    from hilbed.sensors.imager import open_imager
 
-    lens = spec.lens
-    renderer = BulletRenderer(lens, Scenery(beacons, spec.renderer == "egl", spec.ground), cost)
-    detector = ColourDetector(lens, beacons, spec.identity == "anonymous")
-    return LocalEye(spec.mount, beacons, renderer, detector, cost)
+    imager = open_imager(spec, setting, cost)
+    anonymous = spec.identity == "anonymous"
+    detector = make_detector(spec.detector, imager.lens, setting.beacons, anonymous)
+    return LocalEye(imager, setting.beacons, detector, cost)

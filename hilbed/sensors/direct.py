@@ -37,12 +37,13 @@ class DirectSpec(DeliverySpec):
 
 
 class Post(NamedTuple):
-    """What a sensor is given: its name in the scenario, its noise, what disturbs it, who hears the truth."""
+    """What a sensor is given: name in the scenario, noise, what disturbs it, who hears the truth, seed."""
 
     name: str
     rng: Rng
     effects: Effects
     witness: Witness
+    seed: int = 0
 
 
 class Quantity(NamedTuple):
@@ -81,7 +82,7 @@ class Direct:
 
     def sample(self, truth: Truth) -> None:
         """Reads everything at truth.t and sends it on its way."""
-        name, _, effects, witness = self._post
+        name, _, effects, witness, _ = self._post
         delivered = self._delivery.expose(truth.t)
         if self._dropouts.out(truth.t) or name in effects.lost:
             return

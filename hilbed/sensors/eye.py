@@ -3,16 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import cos, nan, sin
-from typing import NamedTuple, Protocol, TypeAlias
+from math import nan
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 
 from hilbed.cost import Cost, perf_counter
-from hilbed.scene import BeaconSpec
+from hilbed.scene import BeaconSpec, ScenerySpec
+from hilbed.sensors.exposure import Exposure
 from hilbed.types import Image, Pose
-from hilbed.vision.seams import Detection, Detector, Renderer
+from hilbed.vision.seams import (
+    Closing,
+    Detection,
+    DetectionFailed,
+    Detector,
+    Shot,
+    Trouble,
+)
 from hilbed.vision.truth import SPURIOUS, match, sights
 
-Mount = tuple[float, float, float]
+if TYPE_CHECKING:
+    from hilbed.sensors.imager import Imager
+
+
+class Setting(NamedTuple):
+    """What a camera is put in front of, and whose noise it has: the run's seed and the camera's own name."""
+
+    beacons: tuple[BeaconSpec, ...]
+    scenery: ScenerySpec = ScenerySpec()
+    seed: int = 0
+    name: str = "camera"
 
 
 class Finding(NamedTuple):
@@ -24,10 +42,14 @@ class Finding(NamedTuple):
 
 
 class Glimpse(NamedTuple):
-    """One exposed frame: image (H, W, 3) RGB and what was found in it, from left to right."""
+    """One exposed frame: image (H, W, 3) RGB and what was found in it, from left to right.
+
+    trouble: why there is no answer of the detector, if there is none.
+    """
 
     image: Image
     findings: list[Finding]
+    trouble: Trouble | None = None
 
 
 Ticket: TypeAlias = Callable[[], Glimpse]
@@ -43,8 +65,8 @@ class Eye(Protocol):
     beacons: tuple[BeaconSpec, ...]
     cost: Cost
 
-    def look(self, pose: Pose, pan: float) -> Ticket:
-        """Exposes a frame from the robot's pose with the camera turned by `pan` (rad, robot's frame)."""
+    def look(self, exposure: Exposure) -> Ticket:
+        """Exposes a frame."""
         ...
 
     def close(self) -> None:
@@ -53,41 +75,42 @@ class Eye(Protocol):
 
 
 class LocalEye:
-    """Renders what is seen from the mount (m, robot's frame) and runs the detector on it, at once.
+    """Exposes a frame and runs the detector on it, at once; cost: the renderer's."""
 
-    beacons: those that renderer and detector know; cost: the renderer's.
-    """
-
-    def __init__(
-        self, mount: Mount, beacons: Sequence[BeaconSpec], renderer: Renderer, detector: Detector, cost: Cost
-    ) -> None:
+    def __init__(self, imager: Imager, beacons: Sequence[BeaconSpec], detector: Detector, cost: Cost) -> None:
         self.beacons = tuple(beacons)
         self.cost = cost
-        self._mount = mount
-        self._renderer = renderer
-        self._detector = detector
+        self._imager, self._detector = imager, detector
 
-    def look(self, pose: Pose, pan: float) -> Ticket:
-        """Exposes a frame from the robot's pose with the camera turned by `pan` (rad, robot's frame)."""
+    def look(self, exposure: Exposure) -> Ticket:
+        """Exposes a frame."""
         cost = self.cost
         start, rendered = perf_counter(), cost.render
-        forward, left, height = self._mount
-        c, s = cos(pose.yaw), sin(pose.yaw)
-        x, y = pose.x + c * forward - s * left, pose.y + s * forward + c * left
-        image = self._renderer.render(x, y, height, pose.yaw + pan)
-        glimpse = Glimpse(image, self._findings(image, Pose(x, y, pose.yaw), pan))
+        shot = self._imager.shoot(exposure)
+        moment = exposure.at(exposure.t)
+        view = self._imager.viewpoint(moment)
+        glimpse = self._judged(shot, Pose(view.x, view.y, moment.pose.yaw), moment.pan)
         cost.vision += perf_counter() - start - (cost.render - rendered)
         return lambda: glimpse
 
     def close(self) -> None:
-        """Gives back what the renderer holds."""
-        self._renderer.close()
+        """Gives back what renderer and detector hold."""
+        self._imager.close()
+        if isinstance(self._detector, Closing):
+            self._detector.close()
 
-    def _findings(self, image: Image, centre: Pose, pan: float) -> list[Finding]:
+    def _judged(self, shot: Shot, centre: Pose, pan: float) -> Glimpse:
+        """Returns a frame with what is found in it; without an answer of the detector, that is nothing."""
+        try:
+            return Glimpse(shot.image, self._findings(shot, centre, pan))
+        except DetectionFailed as failed:
+            return Glimpse(shot.image, [], failed.trouble)
+
+    def _findings(self, shot: Shot, centre: Pose, pan: float) -> list[Finding]:
         """Returns what the detector finds, beside the truth as seen from the optical centre."""
         seen = sights(self.beacons, *centre)
         found = []
-        for detection in self._detector.detect(image):
+        for detection in self._detector.detect(shot):
             beacon = match(pan + detection.azimuth, seen)
             azimuth = nan if beacon == SPURIOUS else seen[beacon].azimuth
             found.append(Finding(detection, beacon, azimuth))

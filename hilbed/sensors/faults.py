@@ -32,5 +32,5 @@ def spurious(mean: float, lens: Lens, names: Sequence[int | None], rng: Rng) -> 
     found = []
     for azimuth in rng.uniform(-0.5 * lens.fov, 0.5 * lens.fov, rng.poisson(mean)).tolist():
         claim = names[int(rng.integers(len(names)))] if names else None
-        found.append(Detection(azimuth, _USUAL_STD / lens.focal, lens.column(azimuth), claim))
+        found.append(Detection(azimuth, _USUAL_STD / lens.fx, lens.column(azimuth), claim))
     return found

@@ -6,7 +6,6 @@ import os
 import pickle
 import socket
 import sys
-from collections.abc import Sequence
 from contextlib import suppress
 from io import BufferedRWPair
 from mmap import mmap
@@ -17,9 +16,9 @@ from weakref import finalize
 import numpy as np
 
 from hilbed.cost import Cost, perf_counter
-from hilbed.scene import BeaconSpec
-from hilbed.sensors.eye import Glimpse, Ticket
-from hilbed.types import HilbedError, Image, Pose
+from hilbed.sensors.exposure import Exposure
+from hilbed.sensors.eye import Glimpse, Setting, Ticket
+from hilbed.types import HilbedError, Image
 
 if TYPE_CHECKING:
     from hilbed.sensors.camera import CameraSpec
@@ -41,10 +40,8 @@ class RemoteEye:
     standard output or error is lost; it ends with the socket, so also when this process is killed.
     """
 
-    def __init__(
-        self, spec: CameraSpec, beacons: Sequence[BeaconSpec], cost: Cost, patience: float = PATIENCE
-    ) -> None:
-        self.beacons, self.cost = tuple(beacons), cost
+    def __init__(self, spec: CameraSpec, setting: Setting, cost: Cost, patience: float = PATIENCE) -> None:
+        self.beacons, self.cost = setting.beacons, cost
         self._ready = self._asked = False
         try:
             self._process, self._socket, memory = _start(spec.height * spec.width * 3)
@@ -53,10 +50,11 @@ class RemoteEye:
         self._socket.settimeout(patience)
         self._line = self._socket.makefile("rwb")
         self._socket.close()  # in name: it stays open as long as the file
-        self._finalize = finalize(self, _end, self._process, self._line)
+        grace = _LAST_WORDS if spec.detector.kind == "foreign" else 0.0
+        self._finalize = finalize(self, _end, self._process, self._line, grace)
         self._image: Image = np.frombuffer(memory, np.uint8).reshape(spec.height, spec.width, 3)
-        self._send((spec, self.beacons))
-        if spec.renderer == "egl":
+        self._send((spec, setting))
+        if spec.renderer == "egl" or spec.detector.kind == "foreign":
             self._meet()  # one that does not work is an error of the scenario: found before it is run
 
     @property
@@ -64,13 +62,13 @@ class RemoteEye:
         """The child's process number."""
         return self._process.pid
 
-    def look(self, pose: Pose, pan: float) -> Ticket:
-        """Has a frame exposed from the robot's pose with the camera turned by `pan` (rad, robot's frame)."""
+    def look(self, exposure: Exposure) -> Ticket:
+        """Has a frame exposed."""
         if self._asked:
             raise RuntimeError("the frame before has not been taken yet")
         self._meet()
         start = perf_counter()
-        self._send((pose, pan))
+        self._send(exposure)
         self._asked = True
         self.cost.vision += perf_counter() - start
         return self._take
@@ -89,8 +87,8 @@ class RemoteEye:
     def _take(self) -> Glimpse:
         self._wait()
         start = perf_counter()
-        findings, render, vision = self._receive()
-        glimpse = Glimpse(self._image.copy(), findings)
+        findings, trouble, render, vision = self._receive()
+        glimpse = Glimpse(self._image.copy(), findings, trouble)
         self._asked = False
         self.cost.render += render
         self.cost.vision += vision + perf_counter() - start
@@ -164,8 +162,16 @@ def _start(size: int) -> tuple[Popen[bytes], socket.socket, mmap]:
         os.close(memory)
 
 
-def _end(child: Popen[bytes], line: BufferedRWPair) -> None:
-    """Ends a child in whatever state it is; it holds nothing that needs to be put in order."""
+def _end(child: Popen[bytes], line: BufferedRWPair, grace: float) -> None:
+    """Ends a child in whatever state it is.
+
+    grace: s that it has to end a child of its own, a foreign detector; else there is nothing to be put in
+    order.
+    """
+    if grace:
+        child.terminate()
+        with suppress(TimeoutExpired):
+            child.wait(grace)
     child.kill()
     child.wait()
     with suppress(OSError):  # a request that was never sent

@@ -20,6 +20,7 @@ from hilbed.cost import Cost
 from hilbed.sensors.camera import open_eye
 from hilbed.sensors.remote import EyeLost
 from hilbed.types import HilbedError, Image
+from hilbed.vision.lifeline import end_with
 
 _PROCESSOR = 36  # of the words after the name in /proc/PID/stat: where it ran last
 
@@ -44,18 +45,18 @@ def answers(asked: Iterator[Any], shared: Image) -> Iterator[object]:
 def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     """Yields None when the eye is ready; then, with each image in `shared`, findings and seconds it took.
 
-    asked: first spec and beacons, then pose and pan of each frame.
+    asked: first spec and setting, then the exposure of each frame.
     """
-    spec, beacons = next(asked)
+    spec, setting = next(asked)
     cost, processors = Cost(), os.sched_getaffinity(0)
-    eye = open_eye(spec, beacons, cost)
+    eye = open_eye(spec, setting, cost)
     yield None
-    for pose, pan in asked:
+    for exposure in asked:
         step_aside(processors)
         render, vision = cost.render, cost.vision
-        image, findings = eye.look(pose, pan)()
+        image, findings, trouble = eye.look(exposure)()
         np.copyto(shared.reshape(image.shape), image)
-        yield findings, cost.render - render, cost.vision - vision
+        yield findings, trouble, cost.render - render, cost.vision - vision
 
 
 def step_aside(processors: set[int]) -> None:
@@ -73,6 +74,8 @@ def step_aside(processors: set[int]) -> None:
 
 def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the bench decides when it is over
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())
+    end_with(os.getppid(), signal.SIGTERM)  # even while it waits for a foreign detector
     descriptor, memory = map(int, sys.argv[1:])
     line = socket.socket(fileno=descriptor).makefile("rwb")
     shared = np.frombuffer(mmap(memory, 0), np.uint8)

@@ -13,10 +13,10 @@ from hilbed.types import Image
 
 Labels = npt.NDArray[np.uint8]
 
-BACKGROUND, OTHER = 0, 255
+BACKGROUND, OTHER = 0, 255  # of the labels, which are masked bit by bit
 HUES = 180  # OpenCV counts hue in steps of 2°
 NEAREST = 15.0 / 2.0  # half the distance between the hues of two beacons
-_LEAST_SATURATION, _LEAST_VALUE = 100, 40  # below either a pixel has no colour
+_LEAST, _MOST = (0, 100, 40), (255, 255, 255)  # hue, saturation, value: below either a pixel has no colour
 
 
 class Palette:
@@ -30,9 +30,10 @@ class Palette:
 
     def label(self, pixels: Image) -> Labels:
         """Returns (n,) for (1, n, 4) RGBA: BACKGROUND, a colour's label, or OTHER for any other colour."""
-        hsv = cv2.cvtColor(pixels, cv2.COLOR_RGB2HSV)[0]
-        coloured = (hsv[:, 1] >= _LEAST_SATURATION) & (hsv[:, 2] >= _LEAST_VALUE)
-        return np.where(coloured, self._labels[hsv[:, 0]], np.uint8(BACKGROUND))
+        hsv = cv2.cvtColor(pixels, cv2.COLOR_RGB2HSV)
+        coloured = cv2.inRange(hsv, _LEAST, _MOST)
+        label = cv2.LUT(cv2.extractChannel(hsv, 0), self._labels)
+        return np.asarray(cv2.bitwise_and(label, coloured)[0], np.uint8)
 
     def _label(self, hue: int) -> int:
         distances = [abs((hue - _hue(colour) + HUES / 2) % HUES - HUES / 2) for colour in self.colours]

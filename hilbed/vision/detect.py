@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from hilbed.scene import BeaconSpec
-from hilbed.types import Array, Image
+from hilbed.types import Array
 from hilbed.vision.colour import Palette
+from hilbed.vision.edges import Edges, crisp, is_soft, soft
 from hilbed.vision.lens import Lens
+from hilbed.vision.rays import leans, pixel_angle, places, rays, steepness
 from hilbed.vision.runs import Indices, Runs, bounds, find_runs, gather
-from hilbed.vision.seams import Detection
+from hilbed.vision.seams import Detection, Shot
 
 FEWEST_ROWS = 3
 ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a straight line, hardly ever more
@@ -20,7 +23,25 @@ ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a str
 # the more pixel columns an edge crosses. An edge that crosses none is off by 1/√12, two of them by 1/√24.
 _ROUNDING = 0.066
 _UPRIGHT = 0.2
+_LEANING = 0.6  # pixels over a beacon's rows, more than rounding makes of most upright axes
 _FINEST = 0.004  # pixels: the beacon's shape is not drawn any better
+_INTERPOLATED = 0.008  # pixels: OpenCV distorts images with weights of 1/32 pixel
+_ROUNDED = 0.24  # pixels: how far (rms) edges that are rounded to whole pixels lie off a straight line
+
+
+class Fit(NamedTuple):
+    """What is known of one blob.
+
+    azimuth of its axis and standard deviation (rad), column and row of its middle, label, how far its edges
+    lie off straight lines (pixels).
+    """
+
+    azimuth: float
+    std: float
+    column: float
+    row: float
+    label: float
+    rough: float
 
 
 class ColourDetector:
@@ -40,37 +61,43 @@ class ColourDetector:
             None if anonymous or colours.count(colour) > 1 else colours.index(colour)
             for colour in self._palette.colours
         ]
-        edges = np.arange(lens.width - 1) + 0.5
-        self._angle = np.arctan((lens.cx - edges) / lens.focal)
-        self._cos = np.cos(self._angle)
-        self._drop = (np.arange(lens.height) - lens.cy) / lens.focal
-        self._slope = np.abs(self._drop)
-        self._focal = lens.focal
 
-    def detect(self, image: Image) -> list[Detection]:
-        """Returns what is seen in an (H, W, 3) RGB image, from left to right."""
-        runs = find_runs(image, self._palette)
+    def detect(self, shot: Shot) -> list[Detection]:
+        """Returns what is seen, from left to right."""
+        runs = find_runs(shot.image, self._palette)
         if runs.row.size == 0:
             return []
-        runs, blob = self._trim(*gather(runs))
+        runs, blob = gather(runs)
+        blurred = is_soft(shot.image, runs)
+        runs, blob = self._trim(runs, blob, blurred)
         if runs.row.size == 0:
             return []
-        return sorted(self._measure(runs, blob), key=lambda detection: detection.column)
+        edges = soft(shot.image, runs, blob) if blurred else crisp(runs)
+        found = [self._detection(fit) for fit in self._measure(runs, blob, edges) if fit.rough <= ROUGH]
+        return sorted(found, key=lambda detection: detection.column)
 
-    def _trim(self, runs: Runs, blob: Indices) -> tuple[Runs, Indices]:
-        """Leaves out rows that cross the rims of foot and top, and blobs with few rows or two runs in one."""
+    def _trim(self, runs: Runs, blob: Indices, blurred: bool) -> tuple[Runs, Indices]:
+        """Leaves out rows that cross the rims of foot and top, and blobs with few rows or two runs in one.
+
+        Where edges are soft, a rim takes a row more, which may show it in two pieces.
+        """
         row = runs.row
         first, count = bounds(blob)
         top, bottom = np.minimum.reduceat(row, first), np.maximum.reduceat(row, first)
         radius = 0.5 * np.maximum.reduceat(runs.right - runs.left, first)
-        highest, lowest = top + radius * self._slope[top], bottom - radius * self._slope[bottom]
-        highest[count > bottom - top + 1] = np.inf
+        middle = np.add.reduceat(0.5 * (runs.left + runs.right), first) / count
+        steep = steepness(self._lens, np.tile(middle, 2), np.concatenate((top, bottom)))
+        upper, lower = np.split(np.tile(radius, 2) * steep, 2)
+        highest, lowest = top + upper + blurred, bottom - lower - blurred
         keep = (row >= highest[blob]) & (row <= lowest[blob])
+        rows = np.floor(lowest) - np.ceil(highest) if blurred else bottom - top
+        many = (np.add.reduceat(keep, first, dtype=np.intp) if blurred else count) > rows + 1
+        keep &= ~many[blob]
         keep &= np.add.reduceat(keep, first, dtype=np.intp)[blob] >= FEWEST_ROWS
         return runs.pick(keep), blob[keep]
 
-    def _measure(self, runs: Runs, blob: Indices) -> list[Detection]:
-        """Returns the azimuth of each blob's axis.
+    def _measure(self, runs: Runs, blob: Indices, edges: Edges) -> Iterator[Fit]:
+        """Yields the azimuth of each blob's axis.
 
         The edges of a cone obey azimuth = axis ± (a + b tan(depression)). In one row, left and right edge
         differ in depression where the beacon is off the middle of the image; b takes that out.
@@ -81,24 +108,76 @@ class ColourDetector:
         def mean(x: Array) -> Array:
             return np.asarray(np.add.reduceat(x, first) / count)
 
-        left, right, drop = self._angle[runs.left], self._angle[runs.right], self._drop[runs.row]
-        low, high = drop * self._cos[runs.left], drop * self._cos[runs.right]
+        left, right, low, high = rays(self._lens, edges, runs.row)
         middle, half, depth = 0.5 * (left + right), 0.5 * (left - right), 0.5 * (low + high)
-        depth -= mean(depth)[blob]
-        half -= mean(half)[blob]
+        width, depression = mean(half), mean(depth)
+        depth -= depression[blob]
+        half -= width[blob]
         taper = (mean(depth * half) / mean(depth * depth))[blob]
         middle -= 0.5 * taper * (low - high)
         azimuth = mean(middle)
 
-        pixel = np.cos(azimuth) ** 2 / self._focal
+        pixel = pixel_angle(self._lens, azimuth, mean(edges.right - edges.left), 2.0 * width)
         middle -= azimuth[blob]
         half -= taper * depth
+        row = mean(runs.row.astype(float))
+        height = runs.row - row[blob]
+        leaning = mean(middle * height) / mean(height * height) / pixel
+        common = _common(leaning, count)
+        if common:
+            middle -= common * pixel[blob] * height
+            azimuth += common * pixel * (self._lens.cy - row)
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
-        steps = np.maximum.reduceat(runs.left, first) - np.minimum.reduceat(runs.left, first)
-        rounding = np.where(steps > 0, _ROUNDING / (1 + steps), _UPRIGHT)
-        std = pixel * np.maximum(rounding, _FINEST)
-        found = zip(azimuth.tolist(), std.tolist(), runs.label[first].tolist(), rough.tolist(), strict=True)
-        return [self._detection(*one) for *one, off in found if off <= ROUGH]
+        noise = mean(edges.noise**2)  # of an edge, pixels squared; the mean of two has half of it
+        off = np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED
+        part = np.minimum(1.0, off) if edges.blurred else np.ones_like(off)
+        if self._lens.upright:
+            rounding = _of_steps(runs.left, first, part)
+        else:
+            top, bottom = np.minimum.reduceat(depth, first), np.maximum.reduceat(depth, first)
+            lean = leans(self._lens, azimuth, depression + top, depression + bottom)
+            narrows = taper[first] * (bottom - top) / pixel
+            rounding = _of_crossings(np.abs(lean - narrows), np.abs(lean + narrows), part)
+        drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
+        std = pixel * np.sqrt(drawn + 0.5 * noise / count)
+        column, row = places(self._lens, azimuth, depression, row)
+        fits = zip(azimuth, std, column, row, runs.label[first], rough, strict=True)
+        return (Fit(*map(float, fit)) for fit in fits)
 
-    def _detection(self, azimuth: float, std: float, label: int) -> Detection:
-        return Detection(azimuth, std, self._lens.column(azimuth), self._identity[label - 1])
+    def _detection(self, fit: Fit) -> Detection:
+        return Detection(fit.azimuth, fit.std, fit.column, self._identity[int(fit.label) - 1], fit.row)
+
+
+def _common(leaning: Array, rows: Indices) -> float:
+    """Returns by how many pixels a row all axes lean, as a rolling shutter makes them; 0 where they stand.
+
+    Of what leans alone nothing can be told: it may be two beacons.
+    """
+    if leaning.size < 2:
+        return 0.0
+    lean = float(leaning[np.argsort(np.abs(leaning))[(leaning.size - 1) // 2]])
+    return lean if abs(lean) * np.median(rows) > _LEANING else 0.0
+
+
+def _of_steps(column: Indices, first: Indices, part: Array) -> Array:
+    """Returns the error (pixels) of each blob's azimuth from rounded edges that cross as many columns.
+
+    part: of the rounding that is left where edges are soft, as they show where they cross columns.
+    """
+    steps = np.maximum.reduceat(column, first) - np.minimum.reduceat(column, first)
+    return np.where(steps > 0, _ROUNDING / (1 + steps) * part, _UPRIGHT)
+
+
+def _of_crossings(left: Array, right: Array, part: Array) -> Array:
+    """Returns the same for edges that cross these numbers of columns.
+
+    The mean of a sawtooth of ±1/2 over x ≥ 1 of its periods has a variance of f² (1 − f)² / (12 x²), f being
+    the part of the last period: 1 / (360 x²) for any f. Within the first period it is (1 − x)² / 12.
+    """
+
+    def one(x: Array) -> Array:
+        first = np.maximum(1.0 - x, 0.0) / np.sqrt(12.0)
+        return np.asarray(np.maximum(first, part / np.sqrt(360.0) / np.maximum(x, 1.0)))
+
+    both: Array = np.hypot(one(left), one(right))
+    return 0.5 * both

@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from os import O_WRONLY, close, devnull, dup, dup2, open
 
 from hilbed.types import ScenarioError
-from hilbed.vision.lens import Lens
+from hilbed.vision.opengl import Pinhole
 
 LARGEST_FRAME = (1024, 768)
 _PATIENCE = 60.0
@@ -28,7 +28,7 @@ def trouble() -> str:
     return "" if child.returncode == 0 else f"a trial in a child process ended with {child.returncode}"
 
 
-def require(lens: Lens) -> None:
+def require(lens: Pinhole) -> None:
     """Raises ScenarioError where EGL does not work or cannot draw as large a frame."""
     width, height = LARGEST_FRAME
     if lens.width > width or lens.height > height:
@@ -40,8 +40,12 @@ def require(lens: Lens) -> None:
         raise ScenarioError(f"the camera's renderer egl does not work here ({trouble()}); use renderer: tiny")
 
 
+_open: set[int] = set()
+_closed: list[int] = []
+
+
 def load(client: int) -> None:
-    """Makes EGL draw for both of Bullet's renderer constants in one client."""
+    """Makes EGL draw for both of Bullet's renderer constants in one client, until it is released."""
     import pybullet
 
     spec = find_spec("eglRenderer")
@@ -51,6 +55,19 @@ def load(client: int) -> None:
         plugin = pybullet.loadPlugin(spec.origin, "_eglRendererPlugin", physicsClientId=client)
     if plugin < 0:
         raise ScenarioError("PyBullet did not load its EGL renderer; use renderer: tiny")
+    _open.add(client)
+
+
+def release(client: int) -> None:
+    """Disconnects a client as soon as no other draws: a client that goes takes the context of all with it."""
+    import pybullet
+
+    _open.discard(client)
+    _closed.append(client)
+    if not _open:
+        with silence():
+            while _closed:
+                pybullet.disconnect(_closed.pop())
 
 
 @contextmanager

@@ -1,14 +1,11 @@
-"""Draws the beacons as a level camera sees them, in a PyBullet client of its own that holds nothing else."""
+"""Draws the beacons as a camera sees them, in a PyBullet client of its own that holds nothing else."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from math import atan2, cos, sin
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TypeAlias
+from typing import Any, TypeAlias
 from weakref import finalize
 
 import cv2
@@ -16,38 +13,48 @@ import numpy as np
 
 from hilbed.cost import Cost, perf_counter
 from hilbed.quiet import muted
-from hilbed.scene import COLOURS, BeaconSpec, Colour
-from hilbed.types import Image, ScenarioError
+from hilbed.scene import BeaconSpec, FloorSpec, ScenerySpec
+from hilbed.scene.chance import made_up
+from hilbed.types import Image, Nanos, ScenarioError
 from hilbed.vision import egl
-from hilbed.vision.cone import obj
-from hilbed.vision.lens import Lens
+from hilbed.vision.backdrop import Backdrop
+from hilbed.vision.light import Glare, bullet
+from hilbed.vision.opengl import Pinhole, look, projection
+from hilbed.vision.parts import of_beacon, of_object
+from hilbed.vision.seams import Viewpoint
+from hilbed.vision.stage import Stage
 
 with muted():
     import pybullet
 
 Quiet: TypeAlias = Callable[[], AbstractContextManager[None]]
 
-NEAR, FAR = 0.02, 200.0
-GROUND: Colour = (0.6, 0.6, 0.6)
-_SQUARE = f"v {-FAR} {-FAR} 0\nv {FAR} {-FAR} 0\nv {FAR} {FAR} 0\nv {-FAR} {FAR} 0\nf 1 2 3 4\n"
+NOTHING = ScenerySpec()
+_EGL_CELL = 32  # pixels a cell of a marker: EGL blurs between pixels, TinyRenderer takes the nearest
 
 # OpenCV's coordinates of the frustum's left and upper edge: TinyRenderer samples a pixel at its left edge
 # and draws one row higher than OpenGL, which samples in the middle.
 _TINY_EDGES = (0.0, -1.0)
 _EGL_EDGES = (-0.5, -0.5)
 
-_FAST = {"renderer": pybullet.ER_TINY_RENDERER, "flags": pybullet.ER_NO_SEGMENTATION_MASK}
-# Flat, exact colours: what the detector gets is the colour of the beacon.
-_LIGHT = {"shadow": 0, "lightAmbientCoeff": 1.0, "lightDiffuseCoeff": 0.0, "lightSpecularCoeff": 0.0}
+_TINY = {"renderer": pybullet.ER_TINY_RENDERER}
 
 
 @dataclass(frozen=True)
 class Scenery:
-    """What is drawn, and by which renderer: ground makes a frame three times as dear."""
+    """What is drawn, and by which renderer; ground: a grey floor where the scenery has none."""
 
     beacons: Sequence[BeaconSpec]
     egl: bool = False
     ground: bool = False
+    around: ScenerySpec = NOTHING
+
+    def surroundings(self) -> ScenerySpec:
+        """Returns what is to be drawn besides the beacons, all of it stated."""
+        around = made_up(self.around, self.beacons)
+        if self.ground and around.floor is None:
+            return around.model_copy(update={"floor": FloorSpec()})
+        return around
 
 
 class BulletRenderer:
@@ -57,7 +64,7 @@ class BulletRenderer:
     not work or is too small. Several renderers may live in one process.
     """
 
-    def __init__(self, lens: Lens, scenery: Scenery, cost: Cost) -> None:
+    def __init__(self, lens: Pinhole, scenery: Scenery, cost: Cost) -> None:
         if scenery.egl:
             egl.require(lens)
         self._lens = lens
@@ -66,83 +73,51 @@ class BulletRenderer:
         if self._client < 0:
             raise ScenarioError("PyBullet has no client left for the camera: too many cameras in one process")
         self._quiet: Quiet = egl.silence if scenery.egl else nullcontext  # EGL prints as it draws
-        self._finalize = finalize(self, _disconnect, self._client, self._quiet)
+        self._finalize = finalize(self, egl.release if scenery.egl else pybullet.disconnect, self._client)
         if scenery.egl:
             egl.load(self._client)
         self._projection = projection(lens, _EGL_EDGES if scenery.egl else _TINY_EDGES)
-        self._beacons = self._load(scenery)
+        around = scenery.surroundings()
+        beacons, others = map(of_beacon, scenery.beacons), map(of_object, around.objects)
+        self._stage = Stage(self._client, list(beacons), list(others), _EGL_CELL if scenery.egl else 1)
+        self._backdrop = None if around == NOTHING else Backdrop(lens, around, scenery.beacons)
+        self._glare = Glare(lens, around.light)
+        self._light = bullet(around.light)
 
-    def render(self, x: float, y: float, z: float, yaw: float) -> Image:
-        """Returns (H, W, 3) RGB as seen from x, y, z (m, map) along `yaw` (rad, map)."""
-        client, lens, cost = self._client, self._lens, self._cost
-        for body, bx, by in self._beacons:
-            half = 0.5 * atan2(y - by, x - bx)
-            pybullet.resetBasePositionAndOrientation(
-                body, (bx, by, 0.0), (0.0, 0.0, sin(half), cos(half)), physicsClientId=client
-            )
-        view = look(x, y, z, yaw)
-        with self._quiet():
-            start = perf_counter()
-            picture = pybullet.getCameraImage(
-                lens.width, lens.height, view, self._projection, **_LIGHT, **_FAST, physicsClientId=client
-            )
-            cost.render += perf_counter() - start
-        rgba = np.asarray(picture[2], np.uint8).reshape(lens.height, lens.width, 4)
-        return np.asarray(cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB), np.uint8)
+    def render(self, view: Viewpoint, t: Nanos) -> Image:
+        """Returns (H, W, 3) RGB as seen from `view` at t."""
+        _, _, rgba, depths, _ = self._picture(view, t, pybullet.ER_NO_SEGMENTATION_MASK)
+        shape = (self._lens.height, self._lens.width)
+        bodies = _rgb(np.asarray(rgba, np.uint8).reshape(*shape, 4))
+        if self._backdrop is None:
+            return bodies
+        solid = (np.asarray(depths, np.float32).reshape(shape) < 1.0).view(np.uint8)
+        image = np.asarray(cv2.copyTo(bodies, solid, self._backdrop.paint(view)), np.uint8)
+        return image if self._glare.plain else self._glare.over(image, view)
+
+    def labels(self, view: Viewpoint, t: Nanos) -> Image:
+        """Returns (H, W): 0 where no beacon is seen, k + 1 where that of index k is."""
+        bodies = np.asarray(self._picture(view, t, 0)[4]).reshape(self._lens.height, self._lens.width)
+        return self._stage.labels(bodies)
 
     def close(self) -> None:
         """Gives the client back; further frames are an error."""
         self._finalize()
 
-    def _load(self, scenery: Scenery) -> list[tuple[int, float, float]]:
-        """Returns body, x and y (m) of each beacon."""
-        with TemporaryDirectory() as folder:
-            file = Path(folder) / "ground.obj"
-            if scenery.ground:
-                self._body(file, _SQUARE, GROUND)
-            bodies = []
-            for index, beacon in enumerate(scenery.beacons):
-                body = self._body(Path(folder) / f"{index}.obj", obj(beacon), COLOURS[beacon.colour])
-                bodies.append((body, *beacon.at))
-        return bodies
-
-    def _body(self, file: Path, mesh: str, colour: Colour) -> int:
-        """Loads a mesh by way of a file, since EGL crashes on one that comes as vertices."""
-        file.write_text(mesh)
-        shape = pybullet.createVisualShape(
-            pybullet.GEOM_MESH, fileName=str(file), rgbaColor=(*colour, 1.0), physicsClientId=self._client
-        )
-        return int(pybullet.createMultiBody(baseVisualShapeIndex=shape, physicsClientId=self._client))
+    def _picture(self, view: Viewpoint, t: Nanos, flags: int) -> Any:
+        """Returns what PyBullet sees: width, height, colours, depths, bodies."""
+        client, lens, cost = self._client, self._lens, self._cost
+        self._stage.set(view, t)
+        matrices = look(view), self._projection
+        with self._quiet():
+            start = perf_counter()
+            picture = pybullet.getCameraImage(
+                lens.width, lens.height, *matrices, **self._light, **_TINY,
+                flags=flags, physicsClientId=client,
+            )  # fmt: skip
+            cost.render += perf_counter() - start
+        return picture
 
 
-def _disconnect(client: int, quiet: Quiet) -> None:
-    with quiet():
-        pybullet.disconnect(client)
-
-
-def look(x: float, y: float, z: float, yaw: float) -> tuple[float, ...]:
-    """Returns OpenGL's 4×4 view matrix, column by column: level, at x, y, z (m), along yaw (rad)."""
-    c, s = cos(yaw), sin(yaw)
-    return (
-        s, 0.0, -c, 0.0,
-        -c, 0.0, -s, 0.0,
-        0.0, 1.0, 0.0, 0.0,
-        c * y - s * x, -z, c * x + s * y, 1.0,
-    )  # fmt: skip
-
-
-def projection(lens: Lens, edges: tuple[float, float]) -> tuple[float, ...]:
-    """Returns OpenGL's 4×4 projection matrix, column by column.
-
-    edges: column of the frustum's left and row of its upper edge, in pixels of OpenCV's convention.
-    """
-    column, row = edges
-    left, right = (column - lens.cx) / lens.focal, (column + lens.width - lens.cx) / lens.focal
-    top, bottom = (lens.cy - row) / lens.focal, (lens.cy - row - lens.height) / lens.focal
-    depth = FAR - NEAR
-    return (
-        2.0 / (right - left), 0.0, 0.0, 0.0,
-        0.0, 2.0 / (top - bottom), 0.0, 0.0,
-        (right + left) / (right - left), (top + bottom) / (top - bottom), -(FAR + NEAR) / depth, -1.0,
-        0.0, 0.0, -2.0 * FAR * NEAR / depth, 0.0,
-    )  # fmt: skip
+def _rgb(rgba: Image) -> Image:
+    return np.asarray(cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB), np.uint8)

@@ -60,6 +60,8 @@ def _stretches(image: Image) -> tuple[Indices, Image]:
     begins = np.empty(pixels.size, np.bool_)
     np.not_equal(pixels[1:], pixels[:-1], out=begins[1:])
     begins[:: image.shape[1]] = True
+    if np.count_nonzero(begins) > pixels.size // 2:  # of a noisy image each pixel may as well be judged
+        return np.arange(pixels.size), pixels.view(np.uint8).reshape(1, -1, 4)
     begin = begins.nonzero()[0]
     return begin, pixels[begin].view(np.uint8).reshape(1, -1, 4)
 

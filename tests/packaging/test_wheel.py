@@ -59,6 +59,7 @@ def test_wheel_names_its_command_its_bus_and_its_licence(unpacked: Path) -> None
     assert named == {
         ("console_scripts", "hilbed"): "hilbed.cli:main",
         ("can.interface", "hilbed"): "hilbed.can.plugin:HilbedBus",
+        ("pytest11", "hilbed"): "hilbed.testing.plugin",
     }
     assert all(entry.load() for entry in found.entry_points)
     assert found.metadata["License-Expression"] == "MIT"
@@ -81,3 +82,16 @@ def test_installed_copy_runs_a_scenario_from_an_empty_folder(unpacked: Path, tmp
     done = installed(unpacked, *run, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "runs/demo-1/report.html").is_file()
+
+
+def test_a_third_party_tests_its_detector_with_the_installed_copy(unpacked: Path, tmp_path: Path) -> None:
+    """The README's own test file, by the plugin that pytest finds by itself."""
+    readme = (ROOT / "README.md").read_text()
+    blocks = [block for block in readme.split("```python\n")[1:] if "assert_azimuths" in block]
+    text = blocks[0].partition("```")[0]
+    assert len([line for line in text.splitlines() if line.strip()]) <= 10, "it is ten lines"
+    (tmp_path / "test_detector.py").write_text(text)
+    options = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "test_detector.py")
+    done = installed(unpacked, *options, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert "3 passed" in done.stdout

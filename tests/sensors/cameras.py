@@ -14,9 +14,10 @@ from hilbed.effects import Effects
 from hilbed.rng import stream
 from hilbed.scene import BeaconSpec
 from hilbed.sensors.camera import Camera, CameraSpec, open_eye
-from hilbed.sensors.eye import LocalEye
+from hilbed.sensors.eye import LocalEye, Setting
+from hilbed.sensors.imager import Imager, Place
 from hilbed.types import Image, Nanos, Pose, Reading, Snapshot, Transfer, Truth
-from hilbed.vision.seams import Detection
+from hilbed.vision.seams import Detection, Shot, Viewpoint
 
 ORIGIN = Pose(0.0, 0.0, 0.0)
 EXPOSURE: Nanos = 100_000_000
@@ -53,22 +54,27 @@ class Ideal:
 
     def __init__(self, spec: CameraSpec, beacons: tuple[BeaconSpec, ...]) -> None:
         self._half, self._beacons = 0.5 * spec.lens.fov, beacons
-        self.eye = (0.0, 0.0, 0.0, 0.0)
+        self.eye = Viewpoint(0.0, 0.0, 0.0, 0.0)
         self.frames = 0
+        self.seen: list[Viewpoint] = []
 
-    def render(self, x: float, y: float, z: float, yaw: float) -> Image:
-        self.eye = (x, y, z, yaw)
+    def render(self, view: Viewpoint, t: Nanos) -> Image:  # noqa: ARG002
+        self.eye = view
         self.frames += 1
-        return np.zeros((16, 16, 3), np.uint8)
+        self.seen.append(view)
+        return np.zeros((64, 640, 3), np.uint8)
 
-    def detect(self, image: Image) -> list[Detection]:  # noqa: ARG002
-        x, y, _, yaw = self.eye
+    def detect(self, shot: Shot) -> list[Detection]:  # noqa: ARG002
+        x, y, _, yaw, *_ = self.eye
         seen = []
         for k, beacon in enumerate(self._beacons):
             azimuth = wrap(atan2(beacon.at[1] - y, beacon.at[0] - x) - yaw)
             if abs(azimuth) < self._half and hypot(beacon.at[0] - x, beacon.at[1] - y) > 0.1:
                 seen.append(Detection(azimuth, 1e-5, 320.0 - 100.0 * azimuth, k))
         return sorted(seen, key=lambda detection: detection.column)
+
+    def labels(self, view: Viewpoint, t: Nanos) -> Image:  # noqa: ARG002
+        return np.zeros((64, 640), np.uint8)
 
     def close(self) -> None:
         pass
@@ -87,8 +93,8 @@ class Bench:
         spec = CameraSpec.model_validate(block)
         self.notes, self.effects, self.cost = Notes(), Effects([1.0, 1.0]), Cost()
         self.ideal = Ideal(spec, beacons)
-        ideal = LocalEye(spec.mount, beacons, self.ideal, self.ideal, self.cost)
-        eye = open_eye(spec, beacons, self.cost) if rendered else ideal
+        ideal = LocalEye(Imager(Place(spec.mount, spec.lens), self.ideal), beacons, self.ideal, self.cost)
+        eye = open_eye(spec, Setting(beacons), self.cost) if rendered else ideal
         self.camera = Camera(spec, eye, stream(seed, "camera"), self.effects, self.notes)
 
     def expose(self, frames: int, pose: Pose = ORIGIN) -> list[Reading]:

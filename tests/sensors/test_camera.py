@@ -123,7 +123,7 @@ def test_a_claimed_identity_does_not_decide_the_truth() -> None:
     """The witness goes by geometry: a detector that names the wrong beacon is found out."""
     bench = Bench({})
     detect = bench.ideal.detect
-    bench.ideal.detect = lambda image: [d._replace(beacon=3) for d in detect(image)]  # type: ignore[method-assign]
+    bench.ideal.detect = lambda shot: [d._replace(beacon=3) for d in detect(shot)]  # type: ignore[method-assign]
     ((reading, beacon, _),) = bench.expose(1) and bench.notes.readings
     assert (reading.beacon, beacon) == (3, 0)
 

@@ -19,12 +19,15 @@ from hilbed.cost import Cost
 from hilbed.effects import Effects
 from hilbed.rng import stream
 from hilbed.sensors.camera import Camera, CameraSpec, open_eye
+from hilbed.sensors.exposure import still
+from hilbed.sensors.eye import Setting
 from hilbed.sensors.remote import EyeLost, RemoteEye
 from hilbed.types import Nanos, Pose, Reading, ScenarioError, Snapshot, Truth
 from tests.sensors.cameras import BEACONS, ORIGIN, Notes
 
 PERIOD: Nanos = 10_000_000
 FAULTS = {"noise": 0.01, "missed": 0.2, "spurious": 0.3, "loss": 0.2, "fov_deg": 120}
+STILL = still(0, ORIGIN)
 TRACKING = {"kind": "tracking", "rate": 2.0}
 
 
@@ -48,7 +51,9 @@ class Diary(Notes):
 def drive(block: dict[str, Any], separate: bool, periods: int = 150) -> tuple[Diary, list[object]]:
     """Turns a robot for a while, blind and dazzled in turn, and returns what witness and controller heard."""
     spec, cost, effects, diary = CameraSpec.model_validate(block), Cost(), Effects([1.0]), Diary()
-    camera = Camera(spec, open_eye(spec, BEACONS, cost, separate), stream(1, "camera"), effects, diary)
+    camera = Camera(
+        spec, open_eye(spec, Setting(BEACONS), cost, separate), stream(1, "camera"), effects, diary
+    )
     heard: list[object] = []
     for k in range(periods):
         diary.now = k * PERIOD
@@ -67,7 +72,7 @@ def drive(block: dict[str, Any], separate: bool, periods: int = 150) -> tuple[Di
 
 @contextmanager
 def eye() -> Iterator[RemoteEye]:
-    remote = RemoteEye(CameraSpec(), BEACONS, Cost())
+    remote = RemoteEye(CameraSpec(), Setting(BEACONS), Cost())
     try:
         yield remote
     finally:
@@ -97,6 +102,14 @@ def ends(pid: int) -> bool:
         {"pan": TRACKING, "latency": 0.0, "mount": [0.2, 0.1, 0.3]},
         {**FAULTS, "pan": TRACKING, "latency": 0.35},
         {**FAULTS, "rate": 200.0, "latency": 0.003, "height": 16},
+        {
+            "exposure": 0.003,
+            "readout": 0.001,
+            "read_noise": 0.03,
+            "k1": -0.02,
+            "tilt_deg": 3.0,
+            "fov_deg": 120,
+        },
     ],
 )
 def test_both_ways_tell_the_same_at_the_same_time(block: dict[str, Any]) -> None:
@@ -118,18 +131,18 @@ def test_a_frame_is_asked_for_when_it_is_delivered_or_when_the_next_is_exposed()
 
 def test_images_are_not_written_to_by_the_next_frame() -> None:
     with eye() as remote:
-        first = remote.look(ORIGIN, 0.0)().image
+        first = remote.look(STILL)().image
         kept = first.copy()
-        second = remote.look(ORIGIN, 1.0)().image
+        second = remote.look(still(0, ORIGIN, 1.0))().image
     assert_array_equal(first, kept)
     assert (first != second).any()
 
 
 def test_a_second_look_before_the_first_was_taken_is_refused() -> None:
     with eye() as remote:
-        ticket = remote.look(ORIGIN, 0.0)
+        ticket = remote.look(STILL)
         with pytest.raises(RuntimeError):
-            remote.look(ORIGIN, 0.0)
+            remote.look(STILL)
         assert ticket().findings
 
 
@@ -137,7 +150,7 @@ def test_no_child_is_left_after_close_nor_when_the_eye_is_forgotten() -> None:
     with eye() as remote:
         assert alive(remote.pid)
     assert not alive(remote.pid)
-    remote = RemoteEye(CameraSpec(), BEACONS, Cost())
+    remote = RemoteEye(CameraSpec(), Setting(BEACONS), Cost())
     pid = remote.pid
     assert alive(pid)
     del remote
@@ -148,19 +161,19 @@ def test_no_child_is_left_after_close_nor_when_the_eye_is_forgotten() -> None:
 def test_a_child_that_is_killed_before_or_between_frames_is_an_error(frames: int) -> None:
     with eye() as remote:
         for _ in range(frames):
-            remote.look(ORIGIN, 0.0)()
+            remote.look(STILL)()
         os.kill(remote.pid, signal.SIGKILL)
         for _ in range(2):
             with pytest.raises(EyeLost, match="ended with -9"):
-                remote.look(ORIGIN, 0.0)()
+                remote.look(STILL)()
             remote._asked = False
 
 
 def test_a_child_that_is_killed_while_a_frame_is_under_way_is_an_error() -> None:
     with eye() as remote:
-        remote.look(ORIGIN, 0.0)()
+        remote.look(STILL)()
         os.kill(remote.pid, signal.SIGSTOP)
-        ticket = remote.look(ORIGIN, 0.0)
+        ticket = remote.look(STILL)
         os.kill(remote.pid, signal.SIGKILL)
         with pytest.raises(EyeLost, match="ended with -9"):
             ticket()
@@ -170,17 +183,17 @@ def test_a_child_that_is_killed_while_a_frame_is_under_way_is_an_error() -> None
 def test_a_child_that_hangs_is_an_error_and_ended(met: bool) -> None:
     with eye() as remote:
         if met:
-            remote.look(ORIGIN, 0.0)()
+            remote.look(STILL)()
         os.kill(remote.pid, signal.SIGSTOP)
         remote._socket.settimeout(0.2)
         with pytest.raises(EyeLost, match=r"has not answered for 0\.2 s"):
-            remote.look(ORIGIN, 0.0)()
+            remote.look(STILL)()
         assert not alive(remote.pid)
 
 
 def test_what_goes_wrong_in_the_child_is_told() -> None:
     with eye() as remote:
-        ticket = remote.look("nowhere", 0.0)  # type: ignore[arg-type]
+        ticket = remote.look("nowhere")  # type: ignore[arg-type]
         with pytest.raises(EyeLost, match="AttributeError"):
             ticket()
         assert not alive(remote.pid)
@@ -190,27 +203,27 @@ def test_an_egl_that_does_not_work_is_an_error_of_the_scenario(monkeypatch: pyte
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere")
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nowhere")
     with pytest.raises(ScenarioError, match="egl does not work here"):
-        RemoteEye(CameraSpec(renderer="egl"), BEACONS, Cost())
+        RemoteEye(CameraSpec(renderer="egl"), Setting(BEACONS), Cost())
 
 
 def test_a_process_that_cannot_be_started_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/nowhere/python")
     with pytest.raises(EyeLost, match="No such file"):
-        RemoteEye(CameraSpec(), BEACONS, Cost())
+        RemoteEye(CameraSpec(), Setting(BEACONS), Cost())
 
 
 def test_an_interrupt_does_not_reach_the_child() -> None:
     with eye() as remote:
-        remote.look(ORIGIN, 0.0)()
+        remote.look(STILL)()
         os.kill(remote.pid, signal.SIGINT)
-        assert remote.look(ORIGIN, 0.0)().findings
+        assert remote.look(STILL)().findings
         assert os.getpgid(remote.pid) != os.getpgid(0)
 
 
 def test_the_child_leaves_the_processor_of_the_bench_where_there_is_another() -> None:
     ours = os.sched_getaffinity(0)
     with eye() as remote:
-        remote.look(ORIGIN, 0.0)()
+        remote.look(STILL)()
         theirs = os.sched_getaffinity(remote.pid)
     assert theirs <= ours
     assert len(theirs) == max(1, len(ours) - 1)
@@ -222,9 +235,11 @@ import sys
 from hilbed.cost import Cost
 from hilbed.sensors.camera import CameraSpec, open_eye
 from hilbed.scene import BeaconSpec
+from hilbed.sensors.exposure import still
+from hilbed.sensors.eye import Setting
 from hilbed.types import Pose
-eye = open_eye(CameraSpec(), [BeaconSpec(at=(4.0, 0.0))], Cost(), separate=True)
-assert eye.look(Pose(0.0, 0.0, 0.0), 0.0)().findings
+eye = open_eye(CameraSpec(), Setting((BeaconSpec(at=(4.0, 0.0)),)), Cost(), separate=True)
+assert eye.look(still(0, Pose(0.0, 0.0, 0.0)))().findings
 print(eye.pid, flush=True)
 sys.stdin.buffer.raw.read() if len(sys.argv) > 1 else None
 """

@@ -9,11 +9,13 @@ import numpy as np
 
 from hilbed.cost import Cost
 from hilbed.scene import BeaconSpec
-from hilbed.types import Array
+from hilbed.types import Array, Image
 from hilbed.vision.lens import Lens
 from hilbed.vision.render import BulletRenderer, Scenery
+from hilbed.vision.seams import Shot, Viewpoint
 
-WIDE = Lens(640, 64, pi / 2)
+WIDE = Lens.of_fov(640, 64, pi / 2)
+AHEAD = Viewpoint(0.0, 0.0, 0.3, 0.0)
 COLOURS = ("red", "orange", "green", "azure", "magenta", "yellow")
 
 
@@ -24,6 +26,10 @@ def beacon(azimuth: float, distance: float, colour: str = "red", **shape: float)
 
 def renderer(beacons: list[BeaconSpec], lens: Lens = WIDE, egl: bool = False) -> BulletRenderer:
     return BulletRenderer(lens, Scenery(beacons, egl), Cost())
+
+
+def shot(image: Image, lens: Lens = WIDE) -> Shot:
+    return Shot(image, 0, lens)
 
 
 def project(points: Array, lens: Lens, eye: tuple[float, float, float], yaw: float) -> Array:

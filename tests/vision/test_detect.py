@@ -11,21 +11,21 @@ from hilbed.scene import COLOURS as ALL_COLOURS
 from hilbed.scene import BeaconSpec
 from hilbed.vision.detect import ColourDetector
 from hilbed.vision.lens import Lens
-from hilbed.vision.seams import Detection
-from tests.vision.scenes import COLOURS, WIDE, axis, beacon, project, renderer
+from hilbed.vision.seams import Detection, Viewpoint
+from tests.vision.scenes import AHEAD, COLOURS, WIDE, axis, beacon, project, renderer, shot
 
 
 def true_azimuth(spec: BeaconSpec, lens: Lens, eye: tuple[float, float, float], yaw: float) -> float:
     pixels = project(axis(spec), lens, eye, yaw)
     assert pixels[0, 0] == pytest.approx(pixels[1, 0], abs=1e-9)
-    return atan((lens.cx - pixels[0, 0]) / lens.focal)
+    return atan((lens.cx - pixels[0, 0]) / lens.fx)
 
 
 def seen(beacons: list[BeaconSpec], yaw: float = 0.0, anonymous: bool = False) -> list[Detection]:
     camera = renderer(beacons)
-    image = camera.render(0.0, 0.0, 0.3, yaw)
+    image = camera.render(Viewpoint(0.0, 0.0, 0.3, yaw), 0)
     camera.close()
-    return ColourDetector(WIDE, beacons, anonymous).detect(image)
+    return ColourDetector(WIDE, beacons, anonymous).detect(shot(image))
 
 
 def errors(frames: int, nearest: float, farthest: float) -> tuple[np.ndarray, np.ndarray, int]:
@@ -40,7 +40,7 @@ def errors(frames: int, nearest: float, farthest: float) -> tuple[np.ndarray, np
         for _ in range(5):
             x, y, z, yaw = rng.uniform((-0.1, -0.1, 0.15, -0.08), (0.1, 0.1, 0.5, 0.08)).tolist()
             expected += len(beacons)
-            for detection in detector.detect(camera.render(x, y, z, yaw)):
+            for detection in detector.detect(shot(camera.render(Viewpoint(x, y, z, yaw), 0))):
                 assert detection.beacon is not None
                 truth = true_azimuth(beacons[detection.beacon], WIDE, (x, y, z), yaw)
                 found.append(detection.azimuth - truth)
@@ -61,12 +61,13 @@ def test_azimuths_from_2_to_8_m_are_exact_and_say_how_exact() -> None:
 
 def test_no_bias_where_left_and_right_edge_differ_in_depression() -> None:
     """Beacons near the border of a tall image, well below the camera: a plain mean is 57 mdeg off."""
-    lens, eye = Lens(640, 480, pi / 2), (0.0, 0.0, 1.0)
+    lens, eye = Lens.of_fov(640, 480, pi / 2), (0.0, 0.0, 1.0)
     millidegrees = []
     for azimuth in np.linspace(0.45, 0.7, 60):
         spec = beacon(float(azimuth), 1.0)
         camera = renderer([spec], lens)
-        (detection,) = ColourDetector(lens, [spec]).detect(camera.render(*eye, 0.0))
+        image = camera.render(Viewpoint(*eye, 0.0), 0)
+        (detection,) = ColourDetector(lens, [spec]).detect(shot(image, lens))
         camera.close()
         millidegrees.append(1e3 * degrees(detection.azimuth - true_azimuth(spec, lens, eye, 0.0)))
     assert abs(np.mean(millidegrees)) <= 2.0
@@ -107,8 +108,8 @@ def test_detections_come_from_left_to_right_with_their_columns() -> None:
 
 
 def test_a_colour_that_no_beacon_has_is_not_a_beacon() -> None:
-    image = renderer([beacon(0.0, 3.0, "blue")]).render(0.0, 0.0, 0.3, 0.0)
-    assert ColourDetector(WIDE, [beacon(0.0, 3.0, "red")]).detect(image) == []
+    image = renderer([beacon(0.0, 3.0, "blue")]).render(AHEAD, 0)
+    assert ColourDetector(WIDE, [beacon(0.0, 3.0, "red")]).detect(shot(image)) == []
 
 
 @pytest.mark.parametrize(("colours", "pixels"), [(("red", "green"), 0.15), (("red", "red"), 0.5)])
@@ -124,7 +125,7 @@ def test_one_beacon_passing_before_another_gives_no_wrong_azimuth(
         counts.add(len(detections))
         for detection in detections:
             error = min(abs(detection.azimuth), abs(detection.azimuth - offset))
-            assert error <= pixels / WIDE.focal, (offset, detection)
+            assert error <= pixels / WIDE.fx, (offset, detection)
     assert 2 in counts
 
 
@@ -141,7 +142,7 @@ def test_a_beacon_leaving_the_image_is_never_measured_wrongly() -> None:
         detections = seen([spec], yaw=float(yaw))
         outcomes.add(len(detections))
         for detection in detections:
-            assert detection.azimuth == pytest.approx(-yaw, abs=0.25 / WIDE.focal)
+            assert detection.azimuth == pytest.approx(-yaw, abs=0.25 / WIDE.fx)
     assert outcomes == {0, 1}
 
 
@@ -161,7 +162,7 @@ def test_a_frame_of_any_content_gives_a_list() -> None:
     frames += [rng.integers(0, 256, shape, np.uint8) for _ in range(5)]
     frames += [np.repeat(rng.integers(0, 256, (*shape[:2], 1), np.uint8), 3, axis=2)]
     for frame in frames:
-        assert all(np.isfinite(d.azimuth) and d.std > 0.0 for d in detector.detect(frame))
+        assert all(np.isfinite(d.azimuth) and d.std > 0.0 for d in detector.detect(shot(frame)))
 
 
 def test_no_beacon_at_all() -> None:

@@ -1,0 +1,1 @@
+"""A detector on rendered frames with truth: datasets, a score, a page, a sweep of what spoils them."""

@@ -1,0 +1,35 @@
+"""The folder that `hilbed vision` leaves behind: numbers as JSON and a page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hilbed.record.disk import RecordError
+from hilbed.record.folder import write_whole
+from hilbed.types import ScenarioError
+
+
+def admit(folder: Path, numbers: str, force: bool) -> None:
+    """Raises ScenarioError where a folder holds what must not be overwritten; numbers: name of its JSON."""
+    try:
+        if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+            return
+    except OSError as error:
+        raise ScenarioError(f"{folder}: {error.strerror}; give another folder with --out") from error
+    if not (folder / numbers).is_file():
+        raise ScenarioError(f"{folder} holds something else; give another folder with --out")
+    if not force:
+        raise ScenarioError(f"{folder} exists; --force replaces what is in it, --out takes another folder")
+
+
+def keep(folder: Path, numbers: str, content: Mapping[str, Any], page: str, text: str) -> None:
+    """Writes JSON and page; raises RecordError if that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RecordError(f"{folder}: {error.strerror}") from error
+    write_whole(folder / numbers, (json.dumps(content, indent=2, allow_nan=False) + "\n").encode())
+    write_whole(folder / page, text.encode())
