@@ -32,7 +32,7 @@ def rows(name: str, results: Sequence[Result]) -> list[str]:
     for line in tabulate(results)[: len(criteria)]:
         criterion = criteria[line.name]
         worst, bound = (line.high, "≤") if criterion.min is None else (line.low, "≥")
-        limit = f"{bound} {criterion.max if criterion.min is None else criterion.min:.4g}"
+        limit = f"{bound} {criterion.max if criterion.min is None else criterion.min:.5g}"
         met = f"{line.passed} of {len(results)}"
         lines.append(ROW.format(name, line.name, f"{worst:.5g}", limit, line.worst, met))
     return lines
