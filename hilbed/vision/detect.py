@@ -137,7 +137,9 @@ class ColourDetector:
             top, bottom = np.minimum.reduceat(depth, first), np.maximum.reduceat(depth, first)
             lean = leans(self._lens, azimuth, depression + top, depression + bottom)
             narrows = taper[first] * (bottom - top) / pixel
-            rounding = _of_crossings(np.abs(lean - narrows), np.abs(lean + narrows), part)
+            whole = count / (count - 1.0)  # half a row more at either end
+            crossed = np.abs((lean - narrows) * whole), np.abs((lean + narrows) * whole)
+            rounding = _of_crossings(*crossed, count, part)
         drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
         std = pixel * np.sqrt(drawn + 0.5 * noise / count)
         column, row = places(self._lens, azimuth, depression, row)
@@ -168,16 +170,18 @@ def _of_steps(column: Indices, first: Indices, part: Array) -> Array:
     return np.where(steps > 0, _ROUNDING / (1 + steps) * part, _UPRIGHT)
 
 
-def _of_crossings(left: Array, right: Array, part: Array) -> Array:
-    """Returns the same for edges that cross these numbers of columns.
+def _of_crossings(left: Array, right: Array, rows: Indices, part: Array) -> Array:
+    """Returns the same for edges that cross these numbers of columns in so many rows.
 
     The mean of a sawtooth of ±1/2 over x ≥ 1 of its periods has a variance of f² (1 − f)² / (12 x²), f being
-    the part of the last period: 1 / (360 x²) for any f. Within the first period it is (1 − x)² / 12.
+    the part of the last period: 1 / (360 x²) for any f. Within the first period it is (1 − x)² / 12. Taken
+    on n rows, each of the x jumps is found to x / n of a period, which adds x / (12 n²).
     """
 
     def one(x: Array) -> Array:
-        first = np.maximum(1.0 - x, 0.0) / np.sqrt(12.0)
-        return np.asarray(np.maximum(first, part / np.sqrt(360.0) / np.maximum(x, 1.0)))
+        first = np.maximum(1.0 - x, 0.0) ** 2 / 12.0
+        later = part * part / 360.0 / np.maximum(x, 1.0) ** 2
+        return np.asarray(np.maximum(first, later) + part * part * x / (12.0 * rows * rows))
 
-    both: Array = np.hypot(one(left), one(right))
+    both: Array = np.sqrt(one(left) + one(right))
     return 0.5 * both
