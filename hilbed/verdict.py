@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import inf, isfinite
 from typing import Any, NamedTuple, TextIO
 
-from hilbed.criteria import CriterionSpec, Judged, all_metrics, judge, window
+from hilbed.criteria import CriterionSpec, Judged, all_metrics, judge, window, window_text
 from hilbed.criteria.signals import Column
 
 
@@ -64,9 +64,13 @@ def text(content: Mapping[str, Any]) -> str:
 
 
 def _entry(one: Judged) -> dict[str, Any]:
-    entry = {
+    entry: dict[str, Any] = {
         "value": _finite(one.value), "limit": one.limit, "passed": one.passed, "bound": one.bound,
     }  # fmt: skip
+    if one.start:
+        entry["from"] = one.start
+    if one.end is not None:
+        entry["to"] = one.end
     return entry if one.passed else entry | {"reason": one.reason}
 
 
@@ -98,7 +102,8 @@ def table(content: Mapping[str, Any], colour: bool = False) -> str:
 def _row(name: str, entry: Mapping[str, Any]) -> tuple[str, ...]:
     sign = "≤" if entry["bound"] == "max" else "≥"
     value = "none" if entry["value"] is None else f"{entry['value']:.4g}"
-    return name, value, f"{sign} {entry['limit']:.4g}", "pass" if entry["passed"] else "FAIL"
+    limit = f"{sign} {entry['limit']:.4g} {window_text(entry)}".rstrip()
+    return name, value, limit, "pass" if entry["passed"] else "FAIL"
 
 
 def _mark(line: str, good: bool, colour: bool) -> str:

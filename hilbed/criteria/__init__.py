@@ -4,6 +4,7 @@ from hilbed.criteria.judge import Judged, judge
 from hilbed.criteria.metrics import DRIVE_METRICS, METRICS, RUN_METRICS, Metric, all_metrics, measure
 from hilbed.criteria.signals import Missing, Signals, window
 from hilbed.criteria.spec import CriterionSpec, metric_of
+from hilbed.criteria.windows import window_text
 
 __all__ = [
     "DRIVE_METRICS",
@@ -19,4 +20,5 @@ __all__ = [
     "measure",
     "metric_of",
     "window",
+    "window_text",
 ]

@@ -12,18 +12,26 @@ from hilbed.criteria.spec import CriterionSpec, metric_of
 
 
 class Judged(NamedTuple):
-    """How a criterion went; bound is "max" or "min", reason is empty where it passed."""
+    """How a criterion went; bound is "max" or "min", reason is empty where it passed.
+
+    start, end: s, the window that it was judged over; None: to the end of the run.
+    """
 
     value: float
     limit: float
     bound: str
     passed: bool
     reason: str
+    start: float = 0.0
+    end: float | None = None
 
 
 def judge(signals: Mapping[str, Column], criteria: Mapping[str, CriterionSpec]) -> dict[str, Judged]:
     """Judges every criterion; a number that is missing or not finite fails, with its reason."""
-    return {name: _judge(signals, name, criterion) for name, criterion in criteria.items()}
+    return {
+        name: _judge(signals, name, criterion)._replace(start=criterion.start, end=criterion.end)
+        for name, criterion in criteria.items()
+    }
 
 
 def _judge(signals: Mapping[str, Column], name: str, criterion: CriterionSpec) -> Judged:

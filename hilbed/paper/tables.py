@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hilbed.angles import wrap
+from hilbed.criteria import window_text
 from hilbed.paper.catalogue import TWIN, Claim, Table
 from hilbed.paper.runs import Done
 from hilbed.report.run import Run
@@ -100,7 +101,8 @@ def _cells(entry: Mapping[str, Any] | None) -> str:
     shown = "none" if entry["value"] is None else f"{entry['value']:.4g}"
     sign = "≤" if entry.get("bound", "max") == "max" else "≥"
     kind = "met" if entry["passed"] else "unmet"
-    limit = f'<td class="number limit">{sign} {entry["limit"]:.4g}</td>'
+    words = f"{sign} {entry['limit']:.4g} {window_text(entry)}".rstrip()
+    limit = f'<td class="number limit">{words}</td>'
     return f'<td class="number {kind}">{shown}</td>{limit}'
 
 

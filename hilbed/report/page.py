@@ -8,7 +8,7 @@ from html import escape
 from math import inf
 from typing import Any
 
-from hilbed.criteria import METRICS
+from hilbed.criteria import METRICS, window_text
 from hilbed.record.folder import CAN, MCAP, SIGNALS, VERDICT
 from hilbed.report.run import Run, Shot, Span
 from hilbed.report.style import COLOURS, Theme
@@ -67,7 +67,8 @@ def _criterion(name: str, entry: Mapping[str, Any]) -> str:
     shown = "none" if value is None else number(value)
     return (
         f'<tr class="{kind}"><th>{escape(name)}</th><td class="number">{shown}</td>'
-        f'<td class="number limit">{"≤" if upper else "≥"} {number(limit)}</td>'
+        f'<td class="number limit">{"≤" if upper else "≥"} {number(limit)}'
+        f" <small>{window_text(entry)}</small></td>"
         f'<td class="bar"><i style="width:{100 * used:.0f}%"></i></td><td class="word">{word}</td></tr>'
     )
 

@@ -72,6 +72,12 @@ def test_criteria_of_a_twin_stand_beside_the_ideal_ones() -> None:
     assert tables.criteria(["b"], {"a": run()}) is None
 
 
+def test_the_window_of_a_limit_stands_beside_it() -> None:
+    late = run()
+    late.verdict["criteria"]["nees"]["from"] = 2.0
+    assert words(tables.criteria(["a"], {"a": late})) == ["ours", "limit", "a", "nees", "2", "≤ 2.5 from 2 s"]
+
+
 def test_the_overview_tells_what_passed_what_failed_and_what_was_not_run() -> None:
     folders = {"p/a": "a", "p/a-bench": "a-bench", "p/b": "b", "p/a@1": "1", "p/a@2": "2"}
     done = {"p/a": Done(0), "p/a-bench": Done(3, "broken"), "p/a@1": Done(0)}

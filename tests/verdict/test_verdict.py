@@ -63,6 +63,20 @@ def test_limits_hold_in_their_window() -> None:
     assert content["reason"] == "whole: 1 is above 0.5; low: 1 is below 2"
 
 
+def test_the_window_of_a_limit_is_told() -> None:
+    block = {"metric": "estimate_position_max", "max": 5.0}
+    content = concluded(
+        whole=criterion(**block),
+        late=criterion(**block, **{"from": 0.5}),
+        early=criterion(**block, to=0.4),
+        amid=criterion(**block, **{"from": 0.2, "to": 0.4}),
+    )
+    windows = [(entry.get("from"), entry.get("to")) for entry in content["criteria"].values()]
+    assert windows == [(None, None), (0.5, None), (None, 0.4), (0.2, 0.4)]
+    lines = [line.split("≤ 5")[1].split("pass")[0].strip() for line in table(content).splitlines()[:4]]
+    assert lines == ["", "from 0.5 s", "to 0.4 s", "0.2–0.4 s"]
+
+
 def test_a_number_that_is_not_there_fails_with_its_reason() -> None:
     content = concluded(nees_mean=criterion(max=3.0), reference_distance_rms=criterion(max=3.0))
     entry = content["criteria"]["nees_mean"]
