@@ -7,7 +7,7 @@ from html import escape
 from typing import NamedTuple
 
 from hilbed.criteria import Missing
-from hilbed.paper import tables
+from hilbed.paper import tables, upsets
 from hilbed.paper.catalogue import TWIN, Figure, Paper, Table
 from hilbed.paper.drawings import Runs, drawers
 from hilbed.paper.plan import variants
@@ -61,6 +61,7 @@ def _section(k: int, content: Content) -> str:
     judged = {name for earlier in before for name in earlier.names()}
     names = [name for name in section.names() if name not in judged]
     cards = page.card("Printed and ours", tables.claims(section.claims, content.runs), wide=True)
+    cards += page.card("Sensors and disturbances", upsets.acting(names, content.runs), wide=True)
     if section.table is not None:
         cards += page.card("Final poses", _statistics(section.table, content), wide=True)
     cards += "".join(_figure(figure, content.runs) for figure in section.figures)

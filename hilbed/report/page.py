@@ -82,13 +82,14 @@ def disturbances(run: Run) -> str:
     if not run.spans:
         return ""
     chips = "".join(
-        f"<li><b>{span.letter}</b> {escape(span.about)} <small>{_when(span)}</small></li>"
+        f"<li><b>{span.letter}</b> {escape(span.about)} <small>{when(span)}</small></li>"
         for span in run.spans
     )
     return f'<ul class="chips">{chips}</ul>\n'
 
 
-def _when(span: Span) -> str:
+def when(span: Span) -> str:
+    """Returns when a disturbance acts, in words."""
     if span.end < inf:
         return f"{span.start:g}–{span.end:g} s"
     always = "in its area" if span.area else "all the time"
