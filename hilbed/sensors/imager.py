@@ -83,6 +83,8 @@ class Imager:
         """Returns what is seen in equal parts of the exposure, or its mean where all rows see the same."""
         shutter, t = self._film.shutter, exposure.t
         images = count(self._motion(exposure)) if shutter.span else 1
+        if images == 1:
+            return [self._renderer.render(self.viewpoint(exposure.at(t)), t)]
         times = [t + nanos(late) for late in moments(shutter, images).tolist()]
         looks = [(self.viewpoint(exposure.at(one)), one) for one in times]
         parts = [[look] for look in looks] if shutter.readout else [looks]

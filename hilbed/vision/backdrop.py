@@ -8,6 +8,7 @@ the same behind the bodies of either renderer.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import compress
 from math import sqrt
 
 import cv2
@@ -37,25 +38,39 @@ class Backdrop:
         self._normals = np.array([np.cross(p.right, p.up) for p in self._planes]).reshape(-1, 3)
         self._matrix = np.array([[lens.fx, 0.0, lens.cx], [0.0, lens.fy, lens.cy], [0.0, 0.0, 1.0]])
         self._frustum = _frustum(lens)
+        self._sides, self._shifts = np.split(np.array(self._frustum), [3], axis=1)
 
     def paint(self, view: Viewpoint) -> Image:
         """Returns (H, W, 3) RGB."""
         image = self._sky.copy()
-        forward, left, up = np.array(axes(view))
-        turn, eye = np.array([-left, -up, forward]), np.array([view.x, view.y, view.z])
-        squares = ((self._corners - eye) @ turn.T).tolist()
-        offsets = ((eye - self._corners[:, 0]) * self._normals).sum(axis=1).tolist()
-        for plane, square, offset in zip(self._planes, squares, offsets, strict=True):
-            corners = clip(square, self._frustum) if offset > _GRAZING else []
-            if corners and len(plane.tiles) == 1:
-                self._fill(image, corners, plane.tiles[0])
-            elif corners:
-                self._cover(image, corners, plane, offset, _frame(plane, turn, eye))
+        forward, left, up = axes(view)
+        turn = np.array([[-one for one in left], [-one for one in up], forward])
+        eye = np.array([view.x, view.y, view.z])
+        for plane, square, offset in self._seen(turn, eye):
+            if square and len(plane.tiles) == 1:
+                self._fill(image, square, plane.tiles[0])
+            elif square:
+                self._cover(image, square, plane, offset, _frame(plane, turn, eye))
         return image
+
+    def _seen(self, turn: Array, eye: Array) -> Iterator[tuple[Plane, Corners, float]]:
+        """Yields planes that look at the eye, what the frame shows of each, and how far off each is (m).
+
+        Most planes lie within most of the sides of the frustum, or beyond one of them altogether.
+        """
+        squares = (self._corners - eye) @ turn.T
+        offsets = ((eye - self._corners[:, 0]) * self._normals).sum(axis=1).tolist()
+        outside = self._sides @ squares.swapaxes(1, 2) + self._shifts < 0.0
+        gone, cut = outside.all(axis=2).any(axis=1).tolist(), outside.any(axis=2).tolist()
+        for k, offset in enumerate(offsets):
+            if offset > _GRAZING and not gone[k]:
+                spaces = list(compress(self._frustum, cut[k]))
+                yield self._planes[k], clip(squares[k].tolist(), spaces), offset
 
     def _cover(self, image: Image, corners: Corners, plane: Plane, offset: float, frame: Array) -> None:
         """Draws a plane with a pattern in strips, each in as many pixels as can be told apart there."""
         depths = [z for *_, z in corners]
+        back = np.linalg.inv(self._matrix @ frame)
         for level, near, far in _strips(plane, self._lens.fx * sqrt(offset)):
             if far > min(depths) and near < max(depths):
                 strip = clip(corners, [(0.0, 0.0, 1.0, -near), (0.0, 0.0, -1.0, far)])
@@ -64,12 +79,14 @@ class Backdrop:
                     self._fill(image, strip, texture)
                 elif strip:
                     texels = _texels(len(texture), plane.copies[level])
-                    self._texture(image, strip, texture, texels @ np.linalg.inv(self._matrix @ frame))
+                    self._texture(image, strip, texture, texels @ back)
 
     def _fill(self, image: Image, corners: Corners, colour: Image) -> None:
         """Fills a polygon, in the camera's axes, with one colour."""
-        polygon = np.rint(self._pixels(corners) * (1 << _BITS)).astype(np.int32)
-        cv2.fillConvexPoly(image, polygon, colour[0, 0].tolist(), cv2.LINE_8, _BITS)
+        lens, one = self._lens, 1 << _BITS
+        fx, fy, cx, cy = one * lens.fx, one * lens.fy, one * lens.cx, one * lens.cy
+        polygon = [(round((fx * x + cx * z) / z), round((fy * y + cy * z) / z)) for x, y, z in corners]
+        cv2.fillConvexPoly(image, np.array(polygon, np.int32), colour[0, 0].tolist(), cv2.LINE_8, _BITS)
 
     def _texture(self, image: Image, corners: Corners, texture: Image, back: Array) -> None:
         """Fills a polygon with a texture; back takes pixels of the image to those of the texture."""
