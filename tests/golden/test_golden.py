@@ -42,6 +42,7 @@ PAPERS = (
     "bui2022/",
     "lages2017/",
     "pliego2023/",
+    "tricycle/",
     "vision/",  # held by tests/vision_kit: its frames, not its run, are what counts
 )  # held by tests/papers, beside the equations
 
