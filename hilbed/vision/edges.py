@@ -10,14 +10,18 @@ from hilbed.types import Array, Image
 from hilbed.vision.runs import Indices, Runs, bounds
 
 # Pixels a run that differ from their neighbour beside an edge: at least 2 where edges are soft, 4 at most; in
-# a sharp image 0, but for beacons that stand side by side.
-_SOFT = 1.5
+# a sharp image 0, but for beacons that stand side by side, texture, shading and noise.
+_UNEVEN = 1.5
+_SOFT = 0.6  # edges a run beside which a pixel has a mixed colour: 1 to 2 where edges are soft
+_MIXED = (0.25, 0.75)  # part of the change from the background's colour to the beacon's
 _SAMPLE = 64  # runs that are enough to judge by
+_SOLID = 3  # pixels: narrower runs may be noise
 _REACHES = (3, 6, 12)  # pixels on either side of where the colour is first seen
 _LEVEL = 0.02  # of a full change a pixel: the background
 _STEEP = (
     0.34  # of a full change a pixel: then it is all within four pixels, and its place is exactly their sum
 )
+_FEW = 0.25  # of the squared difference of two colours
 _WIDE = 4  # pixels: the middle of a run that wide has the beacon's colour
 
 
@@ -40,19 +44,42 @@ def crisp(runs: Runs) -> Edges:
 
 
 def is_soft(image: Image, runs: Runs) -> bool:
-    """Tells whether colours change over more than one pixel at many of the edges."""
+    """Tells whether many edges show pixels of a colour between the background's and the beacon's.
+
+    Texture, shading and noise make pixels differ, too, but leave edges as sharp as they are.
+    """
     runs = runs.pick(np.arange(0, runs.row.size, 1 + runs.row.size // _SAMPLE))
-    last = image.shape[1] - 1
-    odd = 0
-    inner = np.minimum(runs.left + 2, runs.right), np.maximum(runs.right - 1, runs.left + 1)
-    for a, b in (
-        (np.maximum(runs.left - 1, 0), runs.left),
-        (runs.left + 1, inner[0]),
-        (inner[1], runs.right),
-        (runs.right + 1, np.minimum(runs.right + 2, last)),
-    ):
-        odd += int(np.count_nonzero((image[runs.row, a] != image[runs.row, b]).any(1)))
-    return odd > _SOFT * runs.row.size
+    sides = _beside(runs, image.shape[1] - 1)
+    uneven = sum(
+        int(np.count_nonzero((image[runs.row, a] != image[runs.row, b]).any(1)))
+        for outer, outside, inside, inner in sides
+        for a, b in ((outer, outside), (inside, inner))
+    )
+    if uneven <= _UNEVEN * runs.row.size:
+        return False
+    solid = runs.right - runs.left >= _SOLID
+    which = solid.nonzero()[0] if solid.any() else np.arange(solid.size)
+    mixed = [_mixed(image, runs.row[which], [column[which] for column in side]) for side in sides]
+    return sum(mixed) > _SOFT * which.size
+
+
+def _beside(runs: Runs, last: int) -> list[tuple[Indices, ...]]:
+    """Returns the columns of four pixels across either edge, from the background into the beacon."""
+    left, right = runs.left, runs.right
+    return [
+        (np.maximum(left - 1, 0), left, left + 1, np.minimum(left + 2, right)),
+        (np.minimum(right + 2, last), right + 1, right, np.maximum(right - 1, left + 1)),
+    ]
+
+
+def _mixed(image: Image, row: Indices, columns: list[Indices]) -> int:
+    """Returns how many of the edges across four columns show a mixed colour at one of the inner two."""
+    outer, outside, inside, inner = (image[row, column].astype(float) for column in columns)
+    axis = inner - outer
+    axis /= np.maximum((axis * axis).sum(1), 1.0)[:, None]
+    low, high = _MIXED
+    parts = [((colour - outer) * axis).sum(1) for colour in (outside, inside)]
+    return int(np.count_nonzero(np.any([(part > low) & (part < high) for part in parts], 0)))
 
 
 def soft(image: Image, runs: Runs, blob: Indices) -> Edges:
@@ -87,11 +114,19 @@ def _full_colour(image: Image, runs: Runs, blob: Indices) -> Array:
 
 
 def _cover(pixels: Array, full: Array) -> Array:
-    """Returns (n, k) the part of the full colour (n, 3) in pixels (n, k, 3), the last two background."""
+    """Returns (n, k) the part of the full colour (n, 3) in pixels (n, k, 3), the last two background.
+
+    It is 1 less the part of the background, seen in what no shade of the full colour can show: the edges of a
+    beacon that is lit from one side are darker than its middle. Where that is little, all that differs counts.
+    """
     outside = 0.5 * (pixels[:, -1] + pixels[:, -2])
-    axis = full - outside
-    axis /= np.maximum((axis * axis).sum(1), 1.0)[:, None]
-    return np.asarray(np.einsum("nkc,nc->nk", pixels, axis) - (outside * axis).sum(1)[:, None])
+    away = outside - full
+    shade = (outside * full).sum(1) / np.maximum((full * full).sum(1), 1.0)
+    axis = outside - shade[:, None] * full
+    little = (axis * axis).sum(1) < _FEW * (away * away).sum(1)
+    axis[little] = away[little]
+    axis /= np.maximum((away * axis).sum(1), 1.0)[:, None]
+    return np.asarray(1.0 + (full * axis).sum(1)[:, None] - np.einsum("nkc,nc->nk", pixels, axis))
 
 
 def _crossing(cover: Array) -> tuple[Array, Array]:
