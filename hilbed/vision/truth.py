@@ -43,6 +43,8 @@ def match(azimuth: float, seen: Sequence[Sight]) -> int:
     """
     offsets = [abs(remainder(azimuth - sight.azimuth, tau)) for sight in seen]
     hit = [k for k, sight in enumerate(seen) if offsets[k] <= sight.half_width]
+    if len(hit) == 1:
+        return hit[0]
     return min(hit, key=lambda k: (round(offsets[k] / _IN_LINE), seen[k].distance), default=SPURIOUS)
 
 
