@@ -116,7 +116,7 @@ def _full_colour(image: Image, runs: Runs, blob: Indices) -> Array:
 def _cover(pixels: Array, full: Array) -> Array:
     """Returns (n, k) the part of the full colour (n, 3) in pixels (n, k, 3), the last two background.
 
-    It is 1 less the part of the background, seen in what no shade of the full colour can show: the edges of a
+    It is 1 less the part of the background, seen in what no shade of the full colour can show: edges of a
     beacon that is lit from one side are darker than its middle. Where that is little, all that differs counts.
     """
     outside = 0.5 * (pixels[:, -1] + pixels[:, -2])
