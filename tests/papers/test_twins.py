@@ -5,8 +5,10 @@ All of them over 20 seeds: `python scripts/twins.py`.
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from hilbed.disturbances.bodies import SlipPatch
 from hilbed.scenario import bundled
 from hilbed.scenario.load import load
 from hilbed.scenario.model import Scenario
@@ -65,6 +67,16 @@ def test_something_about_it_is_chance(name: str) -> None:
         getattr(disturbance, "spread", 0) or disturbance.kind == "command_noise"
         for disturbance in scenario(name).disturbances
     )
+
+
+@pytest.mark.parametrize("name", TWINS)
+def test_slippery_ground_lies_on_the_way(name: str) -> None:
+    """On that of the ideal run, for half a second at least."""
+    path, patches = ran(name.removesuffix("-bench")).signals, scenario(name).disturbances
+    for patch in [one for one in patches if isinstance(one, SlipPatch)]:
+        low, high = np.sort([patch.corner, patch.opposite], axis=0)
+        inside = ((path["truth"][:, :2] > low) & (path["truth"][:, :2] < high)).all(axis=1)
+        assert np.ptp(path["t"][inside]) > 0.5
 
 
 @pytest.mark.parametrize("name", FEW)
