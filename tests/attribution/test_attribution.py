@@ -61,7 +61,6 @@ def found(name: str, *settings: str) -> Attribution:
 def test_the_rerun_is_the_run(name: str, settings: tuple[str, ...]) -> None:
     attribution = found(name, *settings)
     assert attribution.rerun == attribution.recorded
-    assert len(attribution.shares) >= 1
 
 
 @pytest.mark.parametrize(("fault", "source"), [(SLIPPERY, SLIP), (WORN, MODEL), (STALE, ENCODER)])

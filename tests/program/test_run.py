@@ -18,6 +18,7 @@ from tests.program.hilbed import hilbed
 SHORT = ("--set", "duration=1.5", "--set", "criteria.odometry_over_estimate.min=0")
 CONTENT = {
     "scenario.yaml", "signals.npz", "log.mcap", "can.log", "bus.dbc", "verdict.json", "report.html", "frames",
+    "attribution.json",
 }  # fmt: skip
 
 
@@ -104,7 +105,7 @@ def test_what_is_recorded_does_not_change_the_run(demo: Path, tmp_path: Path, le
     assert ended.status == 0, ended.err
     assert verdict(tmp_path / "run")["hash"] == verdict(demo)["hash"]
     logs = {"log.mcap", "can.log", "bus.dbc", "frames"}
-    absent = logs if level == "signals" else logs | {"signals.npz", "report.html"}
+    absent = logs if level == "signals" else logs | {"signals.npz", "report.html", "attribution.json"}
     assert {entry.name for entry in (tmp_path / "run").iterdir()} == CONTENT - absent
 
 
