@@ -40,7 +40,7 @@ class Fit(NamedTuple):
     std: float
     column: float
     row: float
-    label: float
+    label: int
     rough: float
 
 
@@ -86,15 +86,17 @@ class ColourDetector:
         top, bottom = np.minimum.reduceat(row, first), np.maximum.reduceat(row, first)
         radius = 0.5 * np.maximum.reduceat(runs.right - runs.left, first)
         middle = np.add.reduceat(0.5 * (runs.left + runs.right), first) / count
-        steep = steepness(self._lens, np.tile(middle, 2), np.concatenate((top, bottom)))
-        upper, lower = np.split(np.tile(radius, 2) * steep, 2)
+        rims = np.concatenate((top, bottom))
+        steep = steepness(self._lens, np.concatenate((middle, middle)), rims)
+        upper, lower = radius * steep.reshape(2, -1)
         highest, lowest = top + upper + blurred, bottom - lower - blurred
         keep = (row >= highest[blob]) & (row <= lowest[blob])
         rows = np.floor(lowest) - np.ceil(highest) if blurred else bottom - top
         many = (np.add.reduceat(keep, first, dtype=np.intp) if blurred else count) > rows + 1
         keep &= ~many[blob]
         keep &= np.add.reduceat(keep, first, dtype=np.intp)[blob] >= FEWEST_ROWS
-        return runs.pick(keep), blob[keep]
+        kept = keep.nonzero()[0]
+        return runs.pick(kept), blob[kept]
 
     def _measure(self, runs: Runs, blob: Indices, edges: Edges) -> Iterator[Fit]:
         """Yields the azimuth of each blob's axis.
@@ -128,9 +130,10 @@ class ColourDetector:
             middle -= common * pixel[blob] * height
             azimuth += common * pixel * (self._lens.cy - row)
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
-        noise = mean(edges.noise**2)  # of an edge, pixels squared; the mean of two has half of it
-        off = np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED
-        part = np.minimum(1.0, off) if edges.blurred else np.ones_like(off)
+        noise, part = np.zeros_like(rough), np.ones_like(rough)
+        if edges.blurred:
+            noise = mean(edges.noise**2)  # of an edge, pixels squared; the mean of two has half of it
+            part = np.minimum(1.0, np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED)
         if self._lens.upright:
             rounding = _of_steps(runs.left, first, part)
         else:
@@ -143,11 +146,11 @@ class ColourDetector:
         drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
         std = pixel * np.sqrt(drawn + 0.5 * noise / count)
         column, row = places(self._lens, azimuth, depression, row)
-        fits = zip(azimuth, std, column, row, runs.label[first], rough, strict=True)
-        return (Fit(*map(float, fit)) for fit in fits)
+        columns = (azimuth, std, column, row, runs.label[first], rough)
+        return map(Fit, *(one.tolist() for one in columns))
 
     def _detection(self, fit: Fit) -> Detection:
-        return Detection(fit.azimuth, fit.std, fit.column, self._identity[int(fit.label) - 1], fit.row)
+        return Detection(fit.azimuth, fit.std, fit.column, self._identity[fit.label - 1], fit.row)
 
 
 def _common(leaning: Array, rows: Indices) -> float:

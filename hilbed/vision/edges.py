@@ -48,14 +48,11 @@ def is_soft(image: Image, runs: Runs) -> bool:
 
     Texture, shading and noise make pixels differ, too, but leave edges as sharp as they are.
     """
-    runs = runs.pick(np.arange(0, runs.row.size, 1 + runs.row.size // _SAMPLE))
+    runs = Runs(*(column[:: 1 + runs.row.size // _SAMPLE] for column in runs))
     sides = _beside(runs, image.shape[1] - 1)
-    uneven = sum(
-        int(np.count_nonzero((image[runs.row, a] != image[runs.row, b]).any(1)))
-        for outer, outside, inside, inner in sides
-        for a, b in ((outer, outside), (inside, inner))
-    )
-    if uneven <= _UNEVEN * runs.row.size:
+    pixels = image[runs.row, sides]
+    red, green, blue = np.moveaxis(pixels[:, ::2] != pixels[:, 1::2], -1, 0)
+    if np.count_nonzero(red | green | blue) <= _UNEVEN * runs.row.size:
         return False
     solid = runs.right - runs.left >= _SOLID
     which = solid.nonzero()[0] if solid.any() else np.arange(solid.size)
@@ -63,13 +60,16 @@ def is_soft(image: Image, runs: Runs) -> bool:
     return sum(mixed) > _SOFT * which.size
 
 
-def _beside(runs: Runs, last: int) -> list[tuple[Indices, ...]]:
-    """Returns the columns of four pixels across either edge, from the background into the beacon."""
+def _beside(runs: Runs, last: int) -> Indices:
+    """Returns (2, 4, n) the columns of four pixels across either edge, from the background inwards."""
     left, right = runs.left, runs.right
-    return [
-        (np.maximum(left - 1, 0), left, left + 1, np.minimum(left + 2, right)),
-        (np.minimum(right + 2, last), right + 1, right, np.maximum(right - 1, left + 1)),
-    ]
+    inside, outside = left + 1, right + 1
+    return np.array(
+        [
+            (np.maximum(left - 1, 0), left, inside, np.minimum(left + 2, right)),
+            (np.minimum(right + 2, last), outside, right, np.maximum(right - 1, inside)),
+        ]
+    )
 
 
 def _mixed(image: Image, row: Indices, columns: list[Indices]) -> int:
@@ -117,7 +117,7 @@ def _cover(pixels: Array, full: Array) -> Array:
     """Returns (n, k) the part of the full colour (n, 3) in pixels (n, k, 3), the last two background.
 
     It is 1 less the part of the background, seen in what no shade of the full colour can show: edges of a
-    beacon that is lit from one side are darker than its middle. Where that is little, all that differs counts.
+    beacon that is lit from one side are darker than its middle. Where that is little, all differences count.
     """
     outside = 0.5 * (pixels[:, -1] + pixels[:, -2])
     away = outside - full

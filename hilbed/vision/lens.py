@@ -77,11 +77,11 @@ class Lens:
 
         return Coefficients(self.k1, self.k2, self.p1, self.p2, self.k3)
 
-    @property
+    @cached_property
     def distorted(self) -> bool:
         return any((self.k1, self.k2, self.p1, self.p2, self.k3))
 
-    @property
+    @cached_property
     def upright(self) -> bool:
         """Whether it is neither tilted nor rolled."""
         return not (self.tilt or self.roll)
