@@ -44,6 +44,11 @@ class FrontPoint:
     def __init__(self, spec: FrontPointSpec, reference: Reference) -> None:
         self._spec = spec
         self._reference = reference
+        self.saturated = 0
+
+    def counts(self) -> dict[str, float]:
+        """Returns in how many cycles the law asked for more than max_speed or max_turn_rate."""
+        return {"saturated": self.saturated}
 
     def step(self, t: Nanos, estimate: Estimate) -> Command:
         """Returns v (m/s) and w (rad/s) for the period from `t`."""
@@ -55,7 +60,9 @@ class FrontPoint:
         c, s, aside = cos(pose.yaw), sin(pose.yaw), spec.ahead * w
         wanted = v * c - aside * s - spec.gain * (zx - dx), v * s + aside * c - spec.gain * (zy - dy)
         speed, turn_rate = front_point_twist(wanted, yaw, spec.ahead)
-        return Command(
+        command = Command(
             min(max(speed, -spec.max_speed), spec.max_speed),
             min(max(turn_rate, -spec.max_turn_rate), spec.max_turn_rate),
         )
+        self.saturated += command != (speed, turn_rate)
+        return command

@@ -54,7 +54,8 @@ def body_error(reference: Pose, robot: Pose) -> tuple[float, float, float]:
 class Lqr:
     """v = v_r cos e_ψ + dv, w = w_r + dw with (dv, dw) = K(v_r, w_r) e, then limited.
 
-    `beyond` counts cycles with |e_ψ| > π/2, far from where the error model was linearised.
+    `beyond` counts cycles with |e_ψ| > π/2, far from where the error model was linearised; `saturated` those
+    in which the law asks for more than max_speed or max_turn_rate.
     """
 
     def __init__(self, spec: LqrSpec, reference: Reference, period: Nanos) -> None:
@@ -64,12 +65,12 @@ class Lqr:
         self._R = np.diag(np.power(spec.effort, -2.0))
         self._limits = spec.max_speed, spec.max_turn_rate
         self._gains: dict[tuple[int, int], tuple[Row, Row]] = {}
-        self.beyond = 0
+        self.beyond = self.saturated = 0
         self._gain(*reference.at(0)[1:])  # brings scipy in before the first cycle
 
     def counts(self) -> dict[str, float]:
         """Returns in how many cycles the law was asked for what it was not made for."""
-        return {"beyond": self.beyond}
+        return {"beyond": self.beyond, "saturated": self.saturated}
 
     def step(self, t: Nanos, estimate: Estimate) -> Command:
         """Returns the command for the period from `t`."""
@@ -78,10 +79,11 @@ class Lqr:
         ex, ey, turn = body_error(pose, Pose(x, y, yaw))
         self.beyond += abs(turn) > pi / 2
         (vx, vy, vt), (wx, wy, wt) = self._gain(v, w)
-        return Command(
-            _limited(v * cos(turn) + vx * ex + vy * ey + vt * turn, self._limits[0]),
-            _limited(w + wx * ex + wy * ey + wt * turn, self._limits[1]),
-        )
+        speed = v * cos(turn) + vx * ex + vy * ey + vt * turn
+        turn_rate = w + wx * ex + wy * ey + wt * turn
+        command = Command(_limited(speed, self._limits[0]), _limited(turn_rate, self._limits[1]))
+        self.saturated += command != (speed, turn_rate)
+        return command
 
     def _gain(self, v: float, w: float) -> tuple[Row, Row]:
         key = round(v / GRID), round(w / GRID)

@@ -108,6 +108,9 @@ def test_commands_are_limited() -> None:
         v, w = lqr.step(0, believing(x, x, 1.0))
         assert abs(v) <= 0.6
         assert abs(w) <= 1.5
+    assert lqr.counts()["saturated"] == 2
+    lqr.step(0, believing(*CIRCLE.at(0).pose))
+    assert lqr.counts()["saturated"] == 2
 
 
 def test_a_standing_reference_has_gains() -> None:
