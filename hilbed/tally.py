@@ -15,7 +15,7 @@ ABOUT = {
     "effective": "effective sample size at the last reading",
     "beyond": "cycles with a heading error for which the law was not made",
     "limited": "cycles in which the robot's limits of speed and steering did not allow what was asked for",
-    "saturated": "cycles in which the law asked for more than the controller's limits of speed and turn rate allow",
+    "saturated": "cycles in which the law asked for more than the controller may: max_speed, max_turn_rate",
     "standing": "cycles in which a steered robot was to turn without moving: the wheel turned and waited",
 }
 """What the counters mean, by their names."""
