@@ -82,7 +82,7 @@ class Imager:
     def _images(self, exposure: Exposure) -> list[Image]:
         """Returns what is seen in equal parts of the exposure, or its mean where all rows see the same."""
         shutter, t = self._film.shutter, exposure.t
-        images = count(self._motion(exposure)) if shutter.span else 1
+        images = count(shutter.fineness * self._motion(exposure)) if shutter.span else 1
         if images == 1:
             return [self._renderer.render(self.viewpoint(exposure.at(t)), t)]
         times = [t + nanos(late) for late in moments(shutter, images).tolist()]

@@ -23,9 +23,11 @@ ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a str
 # the more pixel columns an edge crosses. An edge that crosses none is off by 1/√12, two of them by 1/√24.
 _ROUNDING = 0.066
 _UPRIGHT = 0.2
-_LEANING = 0.6  # pixels over a beacon's rows, more than rounding makes of most upright axes
+_LEANING = 0.4  # pixels over the tallest beacon's rows, more than rounding makes of any upright axis
 _FINEST = 0.004  # pixels: the beacon's shape is not drawn any better
 _INTERPOLATED = 0.008  # pixels: OpenCV distorts images with weights of 1/32 pixel
+_TALL = 12  # rows: fewer may lean by rounding alone
+_STEPPED = 0.025  # pixels: what steps of a third of a pixel add where a rolling shutter is drawn
 _ROUNDED = 0.24  # pixels: how far (rms) edges that are rounded to whole pixels lie off a straight line
 
 
@@ -57,9 +59,10 @@ class ColourDetector:
         self._lens = lens
         colours: list[str] = [beacon.colour for beacon in beacons]
         self._palette = Palette(colours)
+        self._sole = [colours.count(colour) == 1 for colour in self._palette.colours]
         self._identity = [
-            None if anonymous or colours.count(colour) > 1 else colours.index(colour)
-            for colour in self._palette.colours
+            colours.index(colour) if sole and not anonymous else None
+            for colour, sole in zip(self._palette.colours, self._sole, strict=True)
         ]
 
     def detect(self, shot: Shot) -> list[Detection]:
@@ -124,26 +127,29 @@ class ColourDetector:
         half -= taper * depth
         row = mean(runs.row.astype(float))
         height = runs.row - row[blob]
-        leaning = mean(middle * height) / mean(height * height) / pixel
-        common = _common(leaning, count)
+        leaning = mean(middle * height) / mean(height * height)
+        alone = count.size == 1 and not self._sole[int(runs.label[0]) - 1]
+        common = 0.0 if alone else _common(leaning, pixel, count)
         if common:
-            middle -= common * pixel[blob] * height
-            azimuth += common * pixel * (self._lens.cy - row)
+            middle -= common * height
+            azimuth += common * (self._lens.cy - row)
         rough = np.sqrt(mean(middle * middle + half * half)) / pixel
         noise, part = np.zeros_like(rough), np.ones_like(rough)
         if edges.blurred:
             noise = mean(edges.noise**2)  # of an edge, pixels squared; the mean of two has half of it
             part = np.minimum(1.0, np.sqrt(np.maximum(rough**2 - noise, 0.0)) / _ROUNDED)
-        if self._lens.upright:
+        if self._lens.upright and not common:
             rounding = _of_steps(runs.left, first, part)
         else:
             top, bottom = np.minimum.reduceat(depth, first), np.maximum.reduceat(depth, first)
             lean = leans(self._lens, azimuth, depression + top, depression + bottom)
+            lean += common / pixel * (count - 1)
             narrows = taper[first] * (bottom - top) / pixel
             whole = count / (count - 1.0)  # half a row more at either end
             crossed = np.abs((lean - narrows) * whole), np.abs((lean + narrows) * whole)
             rounding = _of_crossings(*crossed, count, part)
         drawn = np.maximum(rounding, _FINEST) ** 2 + (_INTERPOLATED**2 if self._lens.distorted else 0.0)
+        drawn += _STEPPED**2 if common and not edges.blurred else 0.0
         std = pixel * np.sqrt(drawn + 0.5 * noise / count)
         column, row = places(self._lens, azimuth, depression, row)
         columns = (azimuth, std, column, row, runs.label[first], rough)
@@ -153,15 +159,17 @@ class ColourDetector:
         return Detection(fit.azimuth, fit.std, fit.column, self._identity[fit.label - 1], fit.row)
 
 
-def _common(leaning: Array, rows: Indices) -> float:
-    """Returns by how many pixels a row all axes lean, as a rolling shutter makes them; 0 where they stand.
+def _common(leaning: Array, pixel: Array, rows: Indices) -> float:
+    """Returns by how much (rad a row) all axes lean, as a rolling shutter makes them; 0 where they stand.
 
-    Of what leans alone nothing can be told: it may be two beacons.
+    leaning: that of each; pixel: rad. It is the median, in which each counts as much as its lean is certain:
+    as the cube of its rows.
     """
-    if leaning.size < 2:
-        return 0.0
-    lean = float(leaning[np.argsort(np.abs(leaning))[(leaning.size - 1) // 2]])
-    return lean if abs(lean) * np.median(rows) > _LEANING else 0.0
+    order = np.argsort(leaning)
+    weight = np.cumsum(rows[order].astype(float) ** 3)
+    lean = float(leaning[order[np.searchsorted(weight, 0.5 * weight[-1])]])
+    certain = rows.max() >= _TALL and (abs(lean) * rows / pixel).max() > _LEANING
+    return lean if certain else 0.0
 
 
 def _of_steps(column: Indices, first: Indices, part: Array) -> Array:

@@ -15,6 +15,7 @@ from hilbed.vision.chip import Light
 MOST = 32
 """Images at most for one exposure."""
 _STILL = 0.25  # pixels
+_FINE = 3  # images a pixel where a row sees few of them
 _INSTANT = 1e-9  # s, the resolution of time
 
 
@@ -31,6 +32,11 @@ class Shutter(NamedTuple):
     def span(self) -> float:
         """From the first light on the first row to the last on the last one, s."""
         return self.exposure + self.readout
+
+    @property
+    def fineness(self) -> int:
+        """How many times closer than for an even blur the images of an exposure have to be."""
+        return _FINE if self.readout > self.exposure else 1
 
 
 def count(motion: float) -> int:
