@@ -60,8 +60,8 @@ class VisionSpec(Spec):
     camera: name of the sensor, None for the only one; poses: along the reference, spread over the duration,
     or random ones from the seed, that see a beacon from `distance` (m, from and to); frames: how many;
     visible: a beacon has to be found if at least this part of it is seen, at this distance, and neither
-    side is cut off by the border of the image; azimuths are judged at this distance, too; criteria: limits
-    by the name of a measure.
+    side is cut off by the border of the image or a nearer beacon; azimuths are judged at this distance, too;
+    criteria: limits by the name of a measure.
     """
 
     camera: str | None = None

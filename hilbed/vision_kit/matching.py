@@ -21,8 +21,9 @@ class Sighting(NamedTuple):
     """A beacon of which a frame shows something, and what was found of it.
 
     frame: number; light: mean brightness of the frame, 0…1; cut: whether a side is cut off by the border of
-    the image; azimuth: the true one (rad); error: of the azimuth, rad, and in pixels (left positive); std:
-    rad, as stated; all NaN where it was not found; named: the identity that the detection states.
+    the image or by a nearer beacon; azimuth: the true one (rad); error: of the azimuth, rad, and in pixels
+    (left positive); std: rad, as stated; all NaN where it was not found; named: the identity that the
+    detection states.
     """
 
     frame: int
@@ -77,16 +78,26 @@ def match(
     pairs = _pairs(offsets, [_gate(beacon) for beacon in seen])
     sightings = []
     for b, beacon in enumerate(seen):
-        blank = _blank(frame, beacon, lens)
+        blank = Sighting(
+            *frame, beacon.beacon, beacon.distance, beacon.visible, beacon.azimuth, _cut(beacon, seen, lens)
+        )
         sightings.append(_with(blank, beacon, found[pairs[b]], lens) if b in pairs else blank)
     left = sorted(set(range(len(found))) - set(pairs.values()))
     return Matched(sightings, [_stray(frame, d, seen, offsets) for d in left])
 
 
-def _blank(frame: tuple[int, float], beacon: BeaconTruth, lens: Lens) -> Sighting:
+def _cut(beacon: BeaconTruth, seen: Sequence[BeaconTruth], lens: Lens) -> bool:
+    """Tells whether a side is out of the image, or in columns in which a nearer beacon may hide it."""
+    left, right = _columns(beacon)
+    nearer = (_columns(one) for one in seen if one.distance < beacon.distance)
+    hidden = any(first <= right + 1 and last >= left - 1 for first, last in nearer)
+    return left <= 0 or right >= lens.width - 1 or hidden
+
+
+def _columns(beacon: BeaconTruth) -> tuple[int, int]:
+    """Returns the outermost columns that show a beacon."""
     assert beacon.box is not None, "only what is seen is matched"
-    cut = beacon.box[0] <= 0 or beacon.box[2] >= lens.width - 1
-    return Sighting(*frame, beacon.beacon, beacon.distance, beacon.visible, beacon.azimuth, cut)
+    return beacon.box[0], beacon.box[2]
 
 
 def pixels(lens: Lens, beacon: BeaconTruth, error: float) -> float:
@@ -97,8 +108,8 @@ def pixels(lens: Lens, beacon: BeaconTruth, error: float) -> float:
 
 
 def _gate(beacon: BeaconTruth) -> float:
-    assert beacon.box is not None, "only what is seen is matched"
-    return 0.5 * (beacon.box[2] - beacon.box[0] + 1) + REACH
+    left, right = _columns(beacon)
+    return 0.5 * (right - left + 1) + REACH
 
 
 def _pairs(offsets: dict[tuple[int, int], float], gates: Sequence[float]) -> dict[int, int]:

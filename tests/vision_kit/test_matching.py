@@ -68,6 +68,15 @@ def test_a_side_cut_off_by_the_border_is_told(left: int, right: int, cut: bool) 
     assert match((0, 1.0), [beacon], [], LENS).sightings[0].cut == cut
 
 
+@pytest.mark.parametrize(
+    ("column", "distance", "cut"), [(109, 3.0, True), (110, 3.0, False), (105, 7.0, False)]
+)
+def test_a_side_that_a_nearer_beacon_hides_is_told(column: int, distance: float, cut: bool) -> None:
+    other = truth(1, column, distance=distance)
+    matched = match((0, 1.0), [truth(0, 100), other], [], LENS)
+    assert matched.sightings[0].cut == cut
+
+
 places = st.lists(st.integers(20, 620), max_size=4, unique=True)
 
 
