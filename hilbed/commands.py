@@ -89,9 +89,12 @@ def _tell(outcome: Outcome, folder: Path, report: Path | None, as_json: bool) ->
     print(f"report: {report}" if report else f"run: {folder}")
 
 
+LISTED = ("scenario", "robot", "plant", "estimator", "controller", "what it shows")
+
+
 def print_scenarios() -> int:
-    """Prints the bundled scenarios, one a line: name, robot, plant, estimator, controller, title."""
-    rows = [_row(name) for name in bundled.names()]
+    """Prints the bundled scenarios, one a line, below a line that says what the columns are."""
+    rows = [LISTED, *(_row(name) for name in bundled.names())]
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

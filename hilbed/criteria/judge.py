@@ -56,7 +56,8 @@ def _measured(
     try:
         chosen = window(signals, criterion.start, end)
         if not any(len(chosen[time]) for time in ("t", "tick/t") if time in chosen):
-            raise Missing(f"the run has no rows from {criterion.start:g} to {end:g} s")
+            last = "on" if end == inf else f"to {end:g} s"
+            raise Missing(f"the run has no rows from {criterion.start:g} s {last}")
         least = criterion.min is not None
         return measure(chosen, metric_of(name, criterion), criterion.drive, least), ""
     except Missing as missing:

@@ -9,6 +9,7 @@ import pytest
 
 from hilbed import yaml12
 from hilbed.build import build
+from hilbed.commands import print_scenarios
 from hilbed.cost import Cost
 from hilbed.record.notes import Notes
 from hilbed.scenario import bundled
@@ -60,3 +61,12 @@ def test_a_rig_comes_out_of_it(name: str) -> None:
         assert bench.drives == (loaded.scenario.robot.drives if on_the_bus else ())
     finally:
         bench.close()
+
+
+def test_the_list_says_what_its_columns_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert print_scenarios() == 0
+    head, *lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(bundled.names())
+    for word, kind in (("robot", "tricycle"), ("plant", "bullet"), ("controller", "lyapunov")):
+        (line,) = [line for line in lines if line.startswith("bui2022/closed-loop-bench ")]
+        assert line.index(f" {kind} ") == head.index(f" {word} ")

@@ -151,7 +151,9 @@ def test_a_window_after_the_end_is_told() -> None:
     late = CriterionSpec.model_validate(block)
     (judged,) = judge(SIGNALS, {"late": late}).values()
     assert not judged.passed
-    assert judged.reason == "the run has no rows from 1e+06 to 2e+06 s"
+    assert judged.reason == "the run has no rows from 1e+06 s to 2e+06 s"
+    (judged,) = judge(SIGNALS, {"late": late.model_copy(update={"end": None})}).values()
+    assert judged.reason == "the run has no rows from 1e+06 s on"
 
 
 def test_the_table_tells_what_was_counted_but_not_that_nothing_was() -> None:
