@@ -55,9 +55,8 @@ def is_soft(image: Image, runs: Runs) -> bool:
     if np.count_nonzero(red | green | blue) <= _UNEVEN * runs.row.size:
         return False
     solid = runs.right - runs.left >= _SOLID
-    which = solid.nonzero()[0] if solid.any() else np.arange(solid.size)
-    mixed = [_mixed(image, runs.row[which], [column[which] for column in side]) for side in sides]
-    return sum(mixed) > _SOFT * which.size
+    pixels = pixels[:, :, solid] if solid.any() else pixels
+    return bool(_mixed(pixels.astype(np.float32)) > _SOFT * pixels.shape[2])
 
 
 def _beside(runs: Runs, last: int) -> Indices:
@@ -72,14 +71,14 @@ def _beside(runs: Runs, last: int) -> Indices:
     )
 
 
-def _mixed(image: Image, row: Indices, columns: list[Indices]) -> int:
-    """Returns how many of the edges across four columns show a mixed colour at one of the inner two."""
-    outer, outside, inside, inner = (image[row, column].astype(float) for column in columns)
-    axis = inner - outer
-    axis /= np.maximum((axis * axis).sum(1), 1.0)[:, None]
-    low, high = _MIXED
-    parts = [((colour - outer) * axis).sum(1) for colour in (outside, inside)]
-    return int(np.count_nonzero(np.any([(part > low) & (part < high) for part in parts], 0)))
+def _mixed(pixels: Array) -> int:
+    """Returns how many edges across four pixels (2, 4, n, 3) show a mixed colour at one of the inner two."""
+    change = pixels - pixels[:, :1]
+    full = change[:, 3]
+    size = np.maximum(np.einsum("snc,snc->sn", full, full), 1.0)
+    part = np.einsum("sknc,snc->skn", change[:, 1:3], full) / size[:, None]
+    mixed = (part > _MIXED[0]) & (part < _MIXED[1])
+    return int(np.count_nonzero(mixed[:, 0] | mixed[:, 1]))
 
 
 def soft(image: Image, runs: Runs, blob: Indices) -> Edges:
@@ -90,11 +89,14 @@ def soft(image: Image, runs: Runs, blob: Indices) -> Edges:
     image: (H, W, 3); blob: that each run belongs to, ascending.
     """
     full = np.tile(_full_colour(image, runs, blob), (2, 1))
-    row, inside = np.tile(runs.row, 2), np.concatenate((runs.left + 1, runs.right))
+    height, width, colours = image.shape
+    pixels = image.reshape(height * width, colours)
+    begin, inside = np.tile(runs.row * width, 2), np.concatenate((runs.left + 1, runs.right))
     outwards = np.repeat((-1, 1), runs.row.size)
     for reach in _REACHES:
         column = inside[:, None] + outwards[:, None] * np.arange(-reach, reach + 1)
-        cover = _cover(image[row[:, None], np.clip(column, 0, image.shape[1] - 1)].astype(float), full)
+        near = pixels.take(begin[:, None] + np.clip(column, 0, width - 1), 0)
+        cover = _cover(near.astype(float), full)
         if np.mean(cover[:, -2] - cover[:, -1]) < _LEVEL:
             break
     beyond, noise = _crossing(cover)
@@ -121,12 +123,16 @@ def _cover(pixels: Array, full: Array) -> Array:
     """
     outside = 0.5 * (pixels[:, -1] + pixels[:, -2])
     away = outside - full
-    shade = (outside * full).sum(1) / np.maximum((full * full).sum(1), 1.0)
-    axis = outside - shade[:, None] * full
-    little = (axis * axis).sum(1) < _FEW * (away * away).sum(1)
+    axis = outside - (_dot(outside, full) / np.maximum(_dot(full, full), 1.0))[:, None] * full
+    little = _dot(axis, axis) < _FEW * _dot(away, away)
     axis[little] = away[little]
-    axis /= np.maximum((away * axis).sum(1), 1.0)[:, None]
-    return np.asarray(1.0 + (full * axis).sum(1)[:, None] - np.einsum("nkc,nc->nk", pixels, axis))
+    axis /= np.maximum(_dot(away, axis), 1.0)[:, None]
+    part = np.matmul(pixels, axis[:, :, None])[:, :, 0]
+    return np.asarray(1.0 + _dot(full, axis)[:, None] - part)
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.asarray(np.einsum("nc,nc->n", a, b))
 
 
 def _crossing(cover: Array) -> tuple[Array, Array]:
@@ -142,6 +148,7 @@ def _crossing(cover: Array) -> tuple[Array, Array]:
     noise = np.sqrt(0.5 * np.mean((cover[:, -1] - cover[:, -2]) ** 2))
 
     steep = (slope > _STEEP) & (k > 0) & (k < last - 1)
-    area = sum(cover[rows, np.clip(k + step, 0, last)] for step in (-1, 0, 1, 2))
+    first, flat = rows * (last + 1) + np.clip(k, 1, last - 2) - 1, cover.ravel()
+    area = flat[first] + flat[first + 1] + flat[first + 2] + flat[first + 3]
     std = np.where(steep, 2.0, np.hypot(part, 1.0 - part) / slope)
     return k - last // 2 + np.where(steep, area - 1.5, part), noise * std
