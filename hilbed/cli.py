@@ -152,7 +152,9 @@ def _parser() -> argparse.ArgumentParser:
     _add_settings(replay)
     replay.add_argument("--json", action="store_true", help="print what differs as JSON")
     add_tools(_command(commands, "bus", _bus, "look at a bus: its nodes, its frames, its DBC"))
-    conformance = _command(commands, "conformance", _conformance, "check a CiA 402 drive on a bus, told a speed or a position")
+    conformance = _command(
+        commands, "conformance", _conformance, "check a CiA 402 drive on a bus, told a speed or a position"
+    )
     add_conformance_options(conformance)
     bench = _command(commands, "bench", _bench, "measure floor, total and where the time goes")
     bench.add_argument("scenario", nargs="?", default="demo", metavar="SCENARIO")

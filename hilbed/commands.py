@@ -93,8 +93,9 @@ LISTED = ("scenario", "robot", "plant", "estimator", "controller", "what it show
 
 
 def print_scenarios() -> int:
-    """Prints the bundled scenarios, one a line, below a line that says what the columns are."""
-    rows = [LISTED, *(_row(name) for name in bundled.names())]
+    """Prints the bundled scenarios, one a line; in a terminal below a line that says what the columns are."""
+    head = [LISTED] if sys.stdout.isatty() else []
+    rows = [*head, *(_row(name) for name in bundled.names())]
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

@@ -63,7 +63,15 @@ def test_a_rig_comes_out_of_it(name: str) -> None:
         bench.close()
 
 
-def test_the_list_says_what_its_columns_are(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_list_is_a_scenario_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert print_scenarios() == 0
+    assert [line.split("  ")[0] for line in capsys.readouterr().out.splitlines()] == list(bundled.names())
+
+
+def test_in_a_terminal_the_list_says_what_its_columns_are(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
     assert print_scenarios() == 0
     head, *lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(bundled.names())
