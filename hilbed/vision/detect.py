@@ -23,7 +23,7 @@ ROUGH = 0.4  # pixels: edges rounded to whole pixels lie 1/√12 (rms) off a str
 # the more pixel columns an edge crosses. An edge that crosses none is off by 1/√12, two of them by 1/√24.
 _ROUNDING = 0.066
 _UPRIGHT = 0.2
-_LEANING = 0.4  # pixels over the tallest beacon's rows, more than rounding makes of any upright axis
+_LEANING = 0.6  # pixels over the tallest beacon's rows, more than rounding makes of any upright axis
 _FINEST = 0.004  # pixels: the beacon's shape is not drawn any better
 _INTERPOLATED = 0.008  # pixels: OpenCV distorts images with weights of 1/32 pixel
 _TALL = 12  # rows: fewer may lean by rounding alone
