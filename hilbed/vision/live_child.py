@@ -22,10 +22,13 @@ from typing import Any, NamedTuple
 import cv2
 import numpy as np
 
+from hilbed.clock import SECOND
 from hilbed.types import HilbedError, Image, Nanos
 from hilbed.vision.image_file import rgb
 from hilbed.vision.lifeline import end_with
 from hilbed.vision.video import be_quiet
+
+_MOST = 0.9  # of the timeout: an end is told at once
 
 
 class Taken(NamedTuple):
@@ -67,7 +70,10 @@ class Watch:
 
 
 def _images(place: int | str, timeout: float) -> Iterator[Any]:
-    """Yields what a device or a stream gives; nothing where it does not open."""
+    """Yields what a device or a stream gives; nothing where it does not open.
+
+    Raises HilbedError where it stalls: OpenCV gives up after the timeout as if that were the end.
+    """
     be_quiet()
     patience = round(1e3 * timeout)
     limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, patience, cv2.CAP_PROP_READ_TIMEOUT_MSEC, patience]
@@ -75,7 +81,10 @@ def _images(place: int | str, timeout: float) -> Iterator[Any]:
         cv2.VideoCapture(place) if isinstance(place, int) else cv2.VideoCapture(place, cv2.CAP_FFMPEG, limits)
     )
     while True:
+        asked = monotonic_ns()
         there, image = capture.read()
+        if not there and monotonic_ns() - asked > _MOST * timeout * SECOND:
+            raise HilbedError(f"no frame for {timeout:g} s")
         if not there:
             return
         yield image
