@@ -11,7 +11,7 @@ from hilbed.attribution.wheels import Steps, steps_of
 from hilbed.build.known import start_of, surroundings, told_of
 from hilbed.build.minds import Surroundings
 from hilbed.build.recorded import known_of
-from hilbed.record.readings import Signals, kinds, readings
+from hilbed.record.readings import Signals, kinds, numbers_of, readings
 from hilbed.scenario.load import Loaded
 from hilbed.types import Pose, Reading
 
@@ -101,7 +101,7 @@ def _true(one: Witnessed, kind: str, sources: frozenset[str]) -> Reading | None:
 
 
 def _witnessed(signals: Signals, kind: str) -> list[Witnessed]:
-    true = signals[f"{kind}/true"].reshape(len(signals[f"{kind}/t"]), -1).tolist()
+    true = numbers_of(signals[f"{kind}/true"])
     shown = signals[f"{kind}/beacon"].tolist()
     told = readings(signals, kind)
-    return [Witnessed(reading, tuple(t), b) for reading, t, b in zip(told, true, shown, strict=True)]
+    return [Witnessed(reading, t, b) for reading, t, b in zip(told, true, shown, strict=True)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from hilbed.clock import SECOND
@@ -21,7 +22,7 @@ def readings(signals: Signals, kind: str) -> list[Reading]:
     if lacking:
         raise ScenarioError(f"{SIGNALS} has no {lacking[0]}: it was recorded by an older hilbed")
     t, delivered = (_nanos(signals[name]) for name in columns[:2])
-    values, stds = (_rows(signals[name]) for name in columns[2:4])
+    values, stds = (numbers_of(signals[name]) for name in columns[2:4])
     claimed = signals[columns[4]].tolist()
     return [
         Reading(kind, at, arrival, value, std, None if beacon < 0 else beacon)
@@ -38,5 +39,6 @@ def _nanos(seconds: npt.NDArray[Any]) -> list[Nanos]:
     return [round(stamp * SECOND) for stamp in seconds.tolist()]
 
 
-def _rows(values: npt.NDArray[Any]) -> list[tuple[float, ...]]:
-    return [tuple(row) for row in values.reshape(len(values), -1).tolist()]
+def numbers_of(values: npt.NDArray[Any]) -> list[tuple[float, ...]]:
+    """Returns the numbers of each reading from a column (K,) or (K, size), where K may be 0."""
+    return [tuple(np.atleast_1d(row).tolist()) for row in values]

@@ -99,6 +99,12 @@ def test_false_azimuths_that_are_taken_for_beacons_are_association() -> None:
     assert max(shares, key=lambda name: shares[name].alone.position) == ASSOCIATION
 
 
+def test_a_blind_robot_has_no_error_of_readings() -> None:
+    attribution = found("demo", "duration=2", "sensors.camera.loss=1", "criteria={}")
+    assert attribution.rerun == attribution.recorded
+    assert {share.source for share in attribution.shares} == {SLIP, MODEL, ENCODER}
+
+
 def test_without_truth_nothing_is_said() -> None:
     loaded, signals = recorded("bui2022/ekf")
     assert attribute(loaded, {**signals, "truth": np.full_like(signals["truth"], np.nan)}) is None
