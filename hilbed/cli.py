@@ -99,6 +99,7 @@ def _parser() -> argparse.ArgumentParser:
 
     sweep = _command(commands, "sweep", _sweep, "run a scenario over seeds and values, in parallel")
     _add_scenario(sweep)
+    _add_detector(sweep)
     sweep.add_argument("--seeds", required=True, metavar="A..B", help="seeds from A to B, both included")
     sweep.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
     sweep.add_argument("--json", action="store_true", help="print the table as JSON")
@@ -207,7 +208,7 @@ def _run(options: Options) -> int:
 def _sweep(options: Options) -> int:
     from hilbed.sweep import sweep
 
-    return sweep(options.scenario, options.seeds, options.settings, options.jobs, options.json)
+    return sweep(options)
 
 
 def _paper(options: Options) -> int:

@@ -6,6 +6,7 @@ import json
 import multiprocessing
 import os
 import signal
+from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from itertools import product
@@ -49,22 +50,23 @@ class Line(NamedTuple):
     passed: int | None
 
 
-def sweep(scenario: str, seeds: str, settings: Sequence[str], jobs: int | None, as_json: bool) -> int:
+def sweep(options: Namespace) -> int:
     """Runs a scenario over seeds `A..B` and `PATH=V1,V2` settings, prints the table, returns the status.
 
     0 where every criterion of every run is met, else 1. Raises ScenarioError before the first run.
     """
-    if jobs is not None and jobs < 1:
-        raise ScenarioError(f"--jobs {jobs}: at least one process has to run")
-    variants = list(_variants(settings))
+    scenario, detector = options.scenario, options.detector
+    if options.jobs is not None and options.jobs < 1:
+        raise ScenarioError(f"--jobs {options.jobs}: at least one process has to run")
+    variants = list(_variants(options.settings))
     for variant in variants:
-        check_alone(load(scenario, variant).scenario)
-    numbers = parse_seeds(seeds)
-    todo = [Job(scenario, variant, seed) for variant in variants for seed in numbers]
-    results = side_by_side(todo, jobs)
+        check_alone(load(scenario, variant, detector=detector).scenario)
+    numbers = parse_seeds(options.seeds)
+    todo = [Job(scenario, variant, seed, detector) for variant in variants for seed in numbers]
+    results = side_by_side(todo, options.jobs)
     tables = {variant: tabulate([r for r in results if r.job.settings == variant]) for variant in variants}
     with quiet_pipe():
-        print(as_text(tables, results) if not as_json else as_json_text(tables, results))
+        print(as_text(tables, results) if not options.json else as_json_text(tables, results))
     return 0 if all(result.status == 0 for result in results) else 1
 
 

@@ -12,6 +12,7 @@ from hilbed.runner import perform
 from hilbed.scenario.load import load
 from tests.build.scenarios import small
 from tests.program.hilbed import Ended, hilbed
+from tests.vision.foreign import write
 
 LIMIT = "criteria={cross_track_rms: {max: 0.05}, odometry_over_estimate: {min: 0.0001}}"
 SETTINGS = (
@@ -89,3 +90,19 @@ def test_what_cannot_be_run_is_refused_before_the_first_run(tmp_path: Path) -> N
     ended = sweep(tmp_path, "--set", "controller=lqr,pid")
     assert (ended.status, ended.out) == (4, "")
     assert "unknown kind 'pid'" in ended.err
+
+
+def test_a_detector_from_anywhere_is_swept_like_any_other(tmp_path: Path) -> None:
+    eyes = write(tmp_path)
+    settings = ("--set", "duration=0.5", "--set", "disturbances=[]", "--set", "criteria={}")
+    named = ("--seeds", "3", "--json", "--detector")
+    ended = hilbed("sweep", "demo", *settings, *named, "eyes.py:Raises", cwd=tmp_path)
+    assert (ended.status, ended.err) == (0, "")
+    (run,) = json.loads(ended.out)["runs"]
+    overlaid = ["duration=0.5", "disturbances=[]", "criteria={}"]
+    single = perform(load("demo", overlaid, 3, f"{eyes}:Raises"), None).verdict
+    assert single["counts"]["sensors.camera"]["raised"] > 0
+    assert (single["hash"], single["signals_hash"]) == (run["hash"], run["signals_hash"])
+    refused = hilbed("sweep", "demo", *named, "nowhere.py:Raises", cwd=tmp_path)
+    assert refused.status == 4
+    assert "--detector nowhere.py:Raises: there is no file" in refused.err
