@@ -7,7 +7,7 @@ from typing import get_args
 from hilbed.clock import seconds
 from hilbed.types import Nanos
 from hilbed.vision.detectors import AnyDetector, ForeignSpec
-from hilbed.vision.seams import Failure, Trouble
+from hilbed.vision.seams import Failure, Trouble, quoted
 
 
 class Troubles:
@@ -42,8 +42,3 @@ class Troubles:
             f"first at t = {seconds(t):.3f} s: {trouble.text}{quoted(trouble.said)}"
             for failure, (t, trouble) in self._first.items()
         ]
-
-
-def quoted(said: str, most: int = 10) -> str:
-    """Returns the last lines that were printed, to go below a message."""
-    return "".join(f"\n  | {line}" for line in said.rstrip().splitlines()[-most:])

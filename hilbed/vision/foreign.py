@@ -14,13 +14,12 @@ from hilbed.vision.code import parse
 from hilbed.vision.detectors import ForeignSpec
 from hilbed.vision.lens import Lens
 from hilbed.vision.returned import checked
-from hilbed.vision.seams import Detection, DetectionFailed, Failure, Shot, Trouble
+from hilbed.vision.seams import Detection, DetectionFailed, Failure, Shot, Trouble, quoted
 
 _CHILD = "hilbed.vision.foreign_child"
 RESTARTS, MOST_RESTARTS = 3, 20
 """So many times in succession, without an answer in between, and in all, it is started again."""
 
-_TOLD = 2000  # characters of what it printed, in a message
 _PLACE = re.compile(r'^  File "(?P<file>[^"]+)", line (?P<line>\d+) in (?P<function>\S+)', re.MULTILINE)
 
 
@@ -86,7 +85,7 @@ class ForeignDetector:
             text = str(answer.get("refused", "gave no sensible answer"))
         said = child.said()
         self._end()
-        raise ScenarioError(f"detector {spec.code}: {text}{_quoted(said)}")
+        raise ScenarioError(f"detector {spec.code}: {text}{quoted(said)}")
 
     def _again(self) -> Child:
         if not (self._left and self._left_in_all):
@@ -127,9 +126,3 @@ def _where(traceback: str) -> str:
     places = list(_PLACE.finditer(traceback))
     own = [place for place in places if "/lib/python" not in place["file"]] or places
     return f" at {own[0]['file']}:{own[0]['line']} in {own[0]['function']}" if own else ""
-
-
-def _quoted(said: str) -> str:
-    """Returns the last lines that it printed, indented, to go below a message."""
-    lines = said[-_TOLD:].rstrip().splitlines()
-    return "".join(f"\n  | {line}" for line in lines)

@@ -52,6 +52,11 @@ class Trouble(NamedTuple):
     said: str = ""
 
 
+def quoted(said: str, most: int = 10) -> str:
+    """Returns the last lines that somebody printed, indented, to go below a message."""
+    return "".join(f"\n  | {line}" for line in said.rstrip().splitlines()[-most:])
+
+
 class DetectionFailed(HilbedError):
     """A detector has no answer for one frame; the frame is left out and the bench goes on."""
 

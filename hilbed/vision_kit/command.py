@@ -107,6 +107,14 @@ def _write(folder: Path, subject: Subject, trial: Trial, verdict: Mapping[str, A
     keep(folder, VERDICT, verdict, PAGE, write(subject, trial, verdict, text))
 
 
+def _failures(failed: Mapping[str, str]) -> list[str]:
+    """Returns the first of each kind of failure, which stands before the colon."""
+    first: dict[str, str] = {}
+    for frame, why in failed.items():
+        first.setdefault(why.partition(":")[0], f"frame {frame}: {why}")
+    return list(first.values())
+
+
 def _table(verdict: Mapping[str, Any], folder: Path) -> str:
     from hilbed.vision.judging import MEASURES
 
@@ -118,6 +126,7 @@ def _table(verdict: Mapping[str, Any], folder: Path) -> str:
         sign = "≤" if entry["bound"] == "max" else "≥"
         shown = "none" if entry["value"] is None else f"{entry['value']:.4g}"
         lines.append(f"{name}  {shown}  {sign} {entry['limit']:.4g}  {'pass' if entry['passed'] else 'FAIL'}")
+    lines += _failures(verdict["failed"])
     word = "passed" if verdict["passed"] else "FAILED"
     return "\n".join(
         [*lines, f"{verdict['scenario']}, {verdict['detector']}: {word}", f"page: {folder / PAGE}"]

@@ -8,7 +8,7 @@ from time import perf_counter
 from typing import NamedTuple
 
 from hilbed.types import Image
-from hilbed.vision.seams import Detection, DetectionFailed, Detector
+from hilbed.vision.seams import Detection, DetectionFailed, Detector, quoted
 from hilbed.vision_kit.labelled import LabelledShot
 from hilbed.vision_kit.matching import Matched, Sighting, Stray, match
 
@@ -79,7 +79,7 @@ def run_trial(
         try:
             found = tuple(detector.detect(labelled.shot))
         except DetectionFailed as failure:
-            trial.failed[k] = f"{failure.failure}: {failure}"
+            trial.failed[k] = f"{failure.failure}: {failure}{quoted(failure.trouble.said)}"
             found = ()
         trial.seconds.append(perf_counter() - start)
         picture = _judge(k, labelled, found, rules)

@@ -101,6 +101,20 @@ def test_a_foreign_detector_is_scored_with_its_failures(tmp_path: Path) -> None:
     assert "Frames without an answer" in page.titles
 
 
+def test_why_a_detector_has_no_answer_is_told_once_with_what_it_printed(tmp_path: Path) -> None:
+    (tmp_path / "loud.py").write_text(
+        "class Loud:\n    def detect(self, shot):\n        print('so be it')\n        raise ValueError('no idea')\n"
+    )
+    ended = hilbed(
+        "vision", "vision/clean", *SETTINGS, *LAX, "-n", "3", "--out", tmp_path / "out",
+        "--detector", f"{tmp_path / 'loud.py'}:Loud",
+    )  # fmt: skip
+    assert ended.status == 1
+    (line,) = [line for line in ended.out.splitlines() if "no idea" in line]
+    assert re.fullmatch(r"frame 0: raised: .*loud\.py:4 in detect: ValueError: no idea", line)
+    assert "  | so be it" in ended.out.splitlines()
+
+
 def test_what_is_there_is_not_overwritten(done: Path, tmp_path: Path) -> None:
     again = ("vision", "vision/clean", *SETTINGS, *LAX, "-n", "2", "--out")
     before = (done / "vision.json").read_bytes()
