@@ -102,9 +102,13 @@ def test_a_foreign_detector_is_scored_with_its_failures(tmp_path: Path) -> None:
 
 
 def test_why_a_detector_has_no_answer_is_told_once_with_what_it_printed(tmp_path: Path) -> None:
-    (tmp_path / "loud.py").write_text(
-        "class Loud:\n    def detect(self, shot):\n        print('so be it')\n        raise ValueError('no idea')\n"
+    code = (
+        "class Loud:",
+        "    def detect(self, shot):",
+        "        print('so be it')",
+        "        raise ValueError('no idea')",
     )
+    (tmp_path / "loud.py").write_text("\n".join(code))
     ended = hilbed(
         "vision", "vision/clean", *SETTINGS, *LAX, "-n", "3", "--out", tmp_path / "out",
         "--detector", f"{tmp_path / 'loud.py'}:Loud",
