@@ -138,7 +138,8 @@ def _identities(trial: Trial) -> str | None:
 
 def _failures(trial: Trial) -> str | None:
     rows = "".join(
-        f"<tr><th>frame {frame}</th><td><pre>{escape(why)}</pre></td></tr>" for frame, why in trial.failed.items()
+        f"<tr><th>frame {frame}</th><td><pre>{escape(why)}</pre></td></tr>"
+        for frame, why in trial.failed.items()
     )
     return f'<div class="scroll"><table><tbody>{rows}</tbody></table></div>' if rows else None
 
