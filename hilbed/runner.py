@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any, NamedTuple
+from urllib.parse import quote
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from hilbed.cost import Cost, perf_counter
 from hilbed.pacer import Pacer
 from hilbed.ports import Sensor
 from hilbed.record.columns import Columns
-from hilbed.record.folder import DBC, RunFolder
+from hilbed.record.folder import DBC, DETECTORS, RunFolder
 from hilbed.record.hashing import BusDigest, run_hash, signals_hash
 from hilbed.record.journal import HELPING, Journal
 from hilbed.record.notes import Notes
@@ -132,6 +133,7 @@ def perform(
         signals |= {name: np.array(column) for name, column in pacer.ledger.columns().items()}
     if folder is not None and loaded.scenario.record != "none":
         ending.attempt(lambda: folder.write_signals(signals))
+        ending.attempt(lambda: folder.keep(_heard(bench, loaded.scenario)))
     account = verdict.Account(
         scenario=loaded.name,
         seed=loaded.scenario.seed,
@@ -181,6 +183,16 @@ def _foreign(sensors: Mapping[str, Sensor]) -> dict[str, Troubles]:
         name: sensor.troubles
         for name, sensor in sensors.items()
         if isinstance(sensor, Camera) and sensor.troubles.foreign
+    }
+
+
+def _heard(bench: Bench, scenario: Scenario) -> dict[str, bytes]:
+    """Returns what foreign detectors have printed, by the file that it goes to."""
+    sensors = dict(zip(scenario.sensors, bench.rig.sensors, strict=False))
+    return {
+        f"{DETECTORS}/{quote(name, safe='')}.log": troubles.heard.encode()
+        for name, troubles in _foreign(sensors).items()
+        if troubles.heard
     }
 
 

@@ -18,9 +18,9 @@ from hilbed.types import ScenarioError
 SCENARIO, SIGNALS, MCAP = "scenario.yaml", "signals.npz", "log.mcap"
 CAN, VERDICT, REPORT, FRAMES = "can.log", "verdict.json", "report.html", "frames"
 DBC = "bus.dbc"
-FILES = "files"
+FILES, DETECTORS = "files", "detectors"
 RESERVE, RESERVED = ".reserve", 1 << 16
-CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, DBC, VERDICT, REPORT, FRAMES, FILES, RESERVE)
+CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, DBC, VERDICT, REPORT, FRAMES, FILES, DETECTORS, RESERVE)
 
 
 class RunFolder:

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from html import escape
 from math import inf
 from typing import Any
+from urllib.parse import quote
 
 from hilbed.criteria import METRICS, window_text
-from hilbed.record.folder import CAN, MCAP, SIGNALS, VERDICT
+from hilbed.record.folder import CAN, DETECTORS, MCAP, SIGNALS, VERDICT
 from hilbed.report.run import Run, Shot, Span
 from hilbed.report.style import COLOURS, Theme
 from hilbed.tally import ABOUT
@@ -182,7 +183,8 @@ def detectors(run: Run) -> str | None:
 def files(run: Run) -> str:
     """Returns links to what else is in the folder, and the fingerprints of the run."""
     names = [name for name in (MCAP, CAN, SIGNALS, VERDICT) if (run.folder / name).exists()]
-    links = " · ".join(f'<a href="{name}">{name}</a>' for name in names)
+    names += [f"{DETECTORS}/{log.name}" for log in sorted((run.folder / DETECTORS).glob("*.log"))]
+    links = " · ".join(f'<a href="{quote(name)}">{escape(name)}</a>' for name in names)
     prints = "<br>".join(
         f"{key} <code>{escape(str(run.verdict.get(key, '')))}</code>" for key in ("hash", "signals_hash")
     )

@@ -176,6 +176,7 @@ class Camera:
         start = perf_counter()
         t, delivered, pan, _, false = frame
         self.troubles.note(t, glimpse.trouble)
+        self.troubles.hear(t, glimpse.said)
         findings = self._faulty(glimpse.findings, false)
         self._pan.saw([finding.detection for finding in findings])
         readings = [azimuth(t, delivered, pan, finding.detection) for finding in findings]

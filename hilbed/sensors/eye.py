@@ -16,6 +16,7 @@ from hilbed.vision.seams import (
     DetectionFailed,
     Detector,
     Shot,
+    Talking,
     Trouble,
 )
 from hilbed.vision.truth import SPURIOUS, match, sights
@@ -44,12 +45,13 @@ class Finding(NamedTuple):
 class Glimpse(NamedTuple):
     """One exposed frame: image (H, W, 3) RGB and what was found in it, from left to right.
 
-    trouble: why there is no answer of the detector, if there is none.
+    trouble: why there is no answer of the detector, if there is none; said: what it printed meanwhile.
     """
 
     image: Image
     findings: list[Finding]
     trouble: Trouble | None = None
+    said: str = ""
 
 
 Ticket: TypeAlias = Callable[[], Glimpse]
@@ -102,9 +104,11 @@ class LocalEye:
     def _judged(self, shot: Shot, centre: Pose, pan: float) -> Glimpse:
         """Returns a frame with what is found in it; without an answer of the detector, that is nothing."""
         try:
-            return Glimpse(shot.image, self._findings(shot, centre, pan))
+            findings = self._findings(shot, centre, pan)
         except DetectionFailed as failed:
-            return Glimpse(shot.image, [], failed.trouble)
+            return Glimpse(shot.image, [], failed.trouble, failed.trouble.said)
+        said = self._detector.said if isinstance(self._detector, Talking) else ""
+        return Glimpse(shot.image, findings, said=said)
 
     def _findings(self, shot: Shot, centre: Pose, pan: float) -> list[Finding]:
         """Returns what the detector finds, beside the truth as seen from the optical centre."""

@@ -87,8 +87,8 @@ class RemoteEye:
     def _take(self) -> Glimpse:
         self._wait()
         start = perf_counter()
-        findings, trouble, render, vision = self._receive()
-        glimpse = Glimpse(self._image.copy(), findings, trouble)
+        findings, trouble, said, render, vision = self._receive()
+        glimpse = Glimpse(self._image.copy(), findings, trouble, said)
         self._asked = False
         self.cost.render += render
         self.cost.vision += vision + perf_counter() - start

@@ -56,9 +56,9 @@ def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     for exposure in asked:
         step_aside(processors, bench)
         render, vision = cost.render, cost.vision
-        image, findings, trouble = eye.look(exposure)()
+        image, *told = eye.look(exposure)()
         np.copyto(shared.reshape(image.shape), image)
-        yield findings, trouble, cost.render - render, cost.vision - vision
+        yield *told, cost.render - render, cost.vision - vision
 
 
 def watch(process: int) -> int:

@@ -84,6 +84,13 @@ class Closing(Protocol):
     def close(self) -> None: ...
 
 
+@runtime_checkable
+class Talking(Protocol):
+    """A detector that prints; said: what, with the frame that it has answered last."""
+
+    said: str
+
+
 class Source(Protocol):
     """A camera that nobody renders for: an image folder, a video, a live camera, a recorded run.
 

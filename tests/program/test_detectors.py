@@ -8,9 +8,14 @@ from typing import Any
 
 import pytest
 
+from hilbed.clock import SECOND
+from hilbed.record.folder import RunFolder
+from hilbed.report import write_report
 from hilbed.runner import Outcome, perform
 from hilbed.scenario.load import load
+from hilbed.sensors.troubles import KEPT, Troubles
 from hilbed.types import ScenarioError
+from hilbed.vision.detectors import ForeignSpec
 from tests.program.hilbed import hilbed
 from tests.vision.foreign import write
 
@@ -171,6 +176,44 @@ def test_a_run_keeps_the_code_and_runs_again_elsewhere(tmp_path: Path, code: Pat
     second = hilbed("run", folder.rename(tmp_path / "moved") / "scenario.yaml", "--out", again)
     assert second.status == 0, second.err
     assert verdict(again)["hash"] == verdict(tmp_path / "moved")["hash"]
+
+
+CHATTERS = """
+class Chatters:
+    shown = 0
+
+    def detect(self, shot):
+        self.shown += 1
+        print("frame", self.shown)
+        if self.shown == 3:
+            raise ValueError("three")
+        return []
+"""
+
+
+@pytest.mark.parametrize("separate", [False, True])
+def test_what_it_prints_is_kept_beside_the_run(tmp_path: Path, separate: bool) -> None:
+    (tmp_path / "chatters.py").write_text(CHATTERS)
+    loaded = load("demo", SHORT, detector=str(tmp_path / "chatters.py"))
+    folder = tmp_path / "run"
+    perform(loaded, RunFolder(folder), separate=separate)
+    frames = verdict(folder)["counts"]["sensors.camera"]["frames"]
+    told = "".join(f"t = {0.1 * k:.3f} s\nframe {k + 1}\n" for k in range(int(frames)))
+    assert frames > 3
+    assert (folder / "detectors" / "camera.log").read_text() == told
+    assert '<a href="detectors/camera.log">' in write_report(folder).read_text()
+    perform(load("demo", SHORT), RunFolder(folder, force=True))
+    assert not (folder / "detectors").exists()
+
+
+def test_of_a_detector_that_never_stops_talking_the_last_is_kept() -> None:
+    troubles = Troubles(ForeignSpec(code="eyes.py"))
+    for k in range(40):
+        troubles.hear(k * SECOND, f"{k} " + "x" * 60_000)
+    assert len(troubles.heard) <= KEPT
+    assert troubles.heard.startswith("t = 23.000 s\n23 x")
+    assert troubles.heard.endswith("x\n")
+    assert "t = 39.000 s" in troubles.heard
 
 
 def verdict(folder: Path) -> dict[str, Any]:
