@@ -12,7 +12,10 @@ from hilbed.vision.lens import LARGEST, Lens
 from hilbed.vision.seams import Shot
 
 TIMEOUT = 5.0
-"""s that a camera may take to open, and for each frame."""
+"""s that a camera may take for each frame."""
+
+OPENING = 10.0
+"""s that it may take to open, where it may not take as long for a frame."""
 
 _STARTUP = 60.0  # s that the process itself may take
 _CHILD = "hilbed.vision.live_child"
@@ -31,17 +34,18 @@ class LiveCamera:
     """The newest frame of a camera, each time one is asked for; those that nobody had time for are left out.
 
     Frames are stamped when they arrive, from the opening on. A child process reads the camera, so that one
-    that blocks can be let go. Raises ScenarioError where the camera does not open within `timeout` s,
-    CameraLost where no frame follows within it.
+    that blocks can be let go. Raises ScenarioError where the camera does not open within `timeout` s, at
+    least `OPENING`, CameraLost where no frame follows within `timeout`.
     """
 
     def __init__(self, place: int | str, optics: Optics, timeout: float = TIMEOUT) -> None:
         self.name = f"camera {place}" if isinstance(place, int) else place
         self._timeout = timeout
-        self._child = Child(_CHILD, LARGEST * LARGEST * 3, (place, timeout))
+        opening = max(timeout, OPENING)
+        self._child = Child(_CHILD, LARGEST * LARGEST * 3, (place, opening, timeout))
         try:
             self._answer(_STARTUP)
-            self._first = self._next()
+            self._first = self._next(opening)
             if self._first is None:
                 raise ScenarioError(f"{self.name}: cannot be opened")
             height, width, _ = self._first.image.shape
@@ -60,19 +64,19 @@ class LiveCamera:
             if taken.image.shape[:2] != (self.lens.height, self.lens.width):
                 raise CameraLost(f"{self.name}: has changed the size of its images")
             yield Shot(taken.image, taken.t, self.lens)
-            taken = self._next()
+            taken = self._next(self._timeout)
 
     def close(self) -> None:
         """Lets the camera go."""
         self._child.close()
 
-    def _next(self) -> _Taken | None:
+    def _next(self, patience: float) -> _Taken | None:
         """Returns the newest frame that nobody has had, None at the end."""
         try:
             self._child.send(b"\n")
         except ChildLost as error:
             raise CameraLost(f"{self.name}: {error}") from None
-        answer = self._answer(self._timeout)
+        answer = self._answer(patience)
         if answer.get("end"):
             raise CameraLost(f"{self.name}: {answer['end']}")
         if "end" in answer:

@@ -41,8 +41,8 @@ class Taken(NamedTuple):
 class Watch:
     """Takes frames as they come, in a thread of its own, until the camera ends; why: empty at a mere end."""
 
-    def __init__(self, place: int | str, timeout: float) -> None:
-        self._place, self._timeout, self._start = place, timeout, monotonic_ns()
+    def __init__(self, place: int | str, opening: float, timeout: float) -> None:
+        self._given, self._start = (place, opening, timeout), monotonic_ns()
         self._news = Condition()
         self._newest: Taken | None = None
         self._ended, self.why = False, ""
@@ -57,7 +57,7 @@ class Watch:
 
     def _run(self) -> None:
         try:
-            for image in _images(self._place, self._timeout):
+            for image in _images(*self._given):
                 self._tell(Taken(rgb(image, "a frame"), monotonic_ns() - self._start), False)
         except (HilbedError, cv2.error) as error:
             self.why = str(error)
@@ -69,14 +69,15 @@ class Watch:
             self._news.notify()
 
 
-def _images(place: int | str, timeout: float) -> Iterator[Any]:
+def _images(place: int | str, opening: float, timeout: float) -> Iterator[Any]:
     """Yields what a device or a stream gives; nothing where it does not open.
 
-    Raises HilbedError where it stalls: OpenCV gives up after the timeout as if that were the end.
+    opening, timeout: s, to open and for a frame. Raises HilbedError where it stalls: OpenCV gives up after
+    the timeout as if that were the end.
     """
     be_quiet()
-    patience = round(1e3 * timeout)
-    limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, patience, cv2.CAP_PROP_READ_TIMEOUT_MSEC, patience]
+    limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, round(1e3 * opening)]
+    limits += [cv2.CAP_PROP_READ_TIMEOUT_MSEC, round(1e3 * timeout)]
     capture = (
         cv2.VideoCapture(place) if isinstance(place, int) else cv2.VideoCapture(place, cv2.CAP_FFMPEG, limits)
     )

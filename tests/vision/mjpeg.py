@@ -19,6 +19,7 @@ class Stream(BaseHTTPRequestHandler):
     server: Server
 
     def do_GET(self) -> None:
+        self.server.over.wait(self.server.late)
         self.send_response(200)
         self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
         self.end_headers()
@@ -35,22 +36,22 @@ class Stream(BaseHTTPRequestHandler):
 
 
 class Server(ThreadingHTTPServer):
-    """frames: so many are sent; stalls: then nothing comes, but the line stays open."""
+    """frames: so many are sent, the first after `late` s; stalls: then the line stays open."""
 
     daemon_threads = True
 
-    def __init__(self, frames: int, stalls: bool) -> None:
+    def __init__(self, frames: int, stalls: bool, late: float) -> None:
         super().__init__(("127.0.0.1", 0), Stream)
-        self.frames, self.stalls, self.over = frames, stalls, Event()
+        self.frames, self.stalls, self.late, self.over = frames, stalls, late, Event()
 
     def handle_error(self, *_: object) -> None:
         """A reader that goes away is no error."""
 
 
 @contextmanager
-def camera(frames: int = 60, stalls: bool = False) -> Iterator[str]:
+def camera(frames: int = 60, stalls: bool = False, late: float = 0.0) -> Iterator[str]:
     """Yields the URL of a camera."""
-    with Server(frames, stalls) as server:
+    with Server(frames, stalls, late) as server:
         Thread(target=server.serve_forever, daemon=True).start()
         try:
             yield f"http://127.0.0.1:{server.server_address[1]}/stream.mjpg"

@@ -255,6 +255,13 @@ def test_a_stream_that_stalls_is_lost_after_its_timeout() -> None:
         source.close()
 
 
+def test_a_camera_may_take_longer_to_open_than_for_a_frame() -> None:
+    with camera(frames=20, late=1.5) as url:
+        source = LiveCamera(url, RIGHT_ANGLE, timeout=1.0)
+        assert next(source.frames()).image.shape == (HEIGHT, WIDTH, 3)
+        source.close()
+
+
 @pytest.mark.parametrize("place", [63, "http://127.0.0.1:9/nothing.mjpg"])
 def test_a_camera_that_is_not_there_is_told(place: int | str) -> None:
     with pytest.raises(ScenarioError, match=r"(camera 63|nothing\.mjpg): (cannot be opened|gives no frame)"):
