@@ -17,10 +17,10 @@ from hilbed.types import ScenarioError
 
 SCENARIO, SIGNALS, MCAP = "scenario.yaml", "signals.npz", "log.mcap"
 CAN, VERDICT, REPORT, FRAMES = "can.log", "verdict.json", "report.html", "frames"
-DBC = "bus.dbc"
+DBC, ATTRIBUTION = "bus.dbc", "attribution.json"
 FILES, DETECTORS = "files", "detectors"
 RESERVE, RESERVED = ".reserve", 1 << 16
-CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, DBC, VERDICT, REPORT, FRAMES, FILES, DETECTORS, RESERVE)
+CONTENT = (SCENARIO, SIGNALS, MCAP, CAN, DBC, VERDICT, REPORT, ATTRIBUTION, FRAMES, FILES, DETECTORS, RESERVE)
 
 
 class RunFolder:

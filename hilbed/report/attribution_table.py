@@ -7,12 +7,11 @@ from html import escape
 from math import isfinite
 
 from hilbed.attribution import Attribution, Error, as_dict, attribute
-from hilbed.record.folder import SCENARIO, write_whole
+from hilbed.record.folder import ATTRIBUTION, SCENARIO, write_whole
 from hilbed.report.run import Run
 from hilbed.scenario.load import load
 from hilbed.types import HilbedError
 
-FILE = "attribution.json"
 NOTE = (
     "The estimator was run again over what this run has recorded, with one source replaced by the truth "
     "(without), and with all others replaced (alone). The sources act on one another, so they do not add up; "
@@ -31,7 +30,7 @@ def table(run: Run) -> str | None:
         return None
     if found is None or not found.shares:
         return None
-    write_whole(run.folder / FILE, (json.dumps(as_dict(found), indent=2) + "\n").encode())
+    write_whole(run.folder / ATTRIBUTION, (json.dumps(as_dict(found), indent=2) + "\n").encode())
     most = max((s.alone.position for s in found.shares if isfinite(s.alone.position)), default=0.0)
     rows = "".join(
         _row(share.source, share.without, share.alone, most)

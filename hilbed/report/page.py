@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from hilbed.criteria import METRICS, window_text
-from hilbed.record.folder import CAN, DETECTORS, MCAP, SIGNALS, VERDICT
+from hilbed.record.folder import ATTRIBUTION, CAN, DETECTORS, MCAP, SIGNALS, VERDICT
 from hilbed.report.run import Run, Shot, Span
 from hilbed.report.style import COLOURS, Theme
 from hilbed.tally import ABOUT
@@ -182,7 +182,7 @@ def detectors(run: Run) -> str | None:
 
 def files(run: Run) -> str:
     """Returns links to what else is in the folder, and the fingerprints of the run."""
-    names = [name for name in (MCAP, CAN, SIGNALS, VERDICT) if (run.folder / name).exists()]
+    names = [name for name in (MCAP, CAN, SIGNALS, VERDICT, ATTRIBUTION) if (run.folder / name).exists()]
     names += [f"{DETECTORS}/{log.name}" for log in sorted((run.folder / DETECTORS).glob("*.log"))]
     links = " · ".join(f'<a href="{quote(name)}">{escape(name)}</a>' for name in names)
     prints = "<br>".join(
