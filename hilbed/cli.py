@@ -9,7 +9,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TypeAlias
 
 from hilbed import __version__
 from hilbed.busoptions import add_bus
@@ -76,15 +76,31 @@ def _status(options: Options) -> int:
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
-    from hilbed.bustools.options import add_tools
-    from hilbed.conformance.options import add_options as add_conformance_options
+_Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
 
+
+def _parser() -> argparse.ArgumentParser:
     text = "A bench for wheeled robots that behaves like a hardware-in-the-loop rig."
     parser = _Parser(prog="hilbed", description=text)
     parser.add_argument("--version", action="version", version=f"hilbed {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=_Parser)
 
+    for add in (
+        _add_run,
+        _add_sweep,
+        _add_paper,
+        _add_frames_command,
+        _add_vision,
+        _add_readers,
+        _add_desk,
+        _add_bench,
+    ):
+        add(commands)
+    return parser
+
+
+def _add_run(commands: _Commands) -> None:
+    """Adds `hilbed run`."""
     run = _command(commands, "run", _run, "run a scenario and judge it")
     _add_scenario(run)
     run.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
@@ -97,6 +113,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--realtime", action="store_true", help="pace the cycles to the wall clock")
     add_bus(run, "left out: the scenario or CAN_INTERFACE says, else all is simulated")
 
+
+def _add_sweep(commands: _Commands) -> None:
+    """Adds `hilbed sweep`."""
     sweep = _command(commands, "sweep", _sweep, "run a scenario over seeds and values, in parallel")
     _add_scenario(sweep)
     _add_detector(sweep)
@@ -104,6 +123,9 @@ def _parser() -> argparse.ArgumentParser:
     sweep.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
     sweep.add_argument("--json", action="store_true", help="print the table as JSON")
 
+
+def _add_paper(commands: _Commands) -> None:
+    """Adds `hilbed paper`."""
     paper = _command(commands, "paper", _paper, "run all experiments of a paper and write its page")
     paper.add_argument("paper", metavar="NAME", help="such as lages2017")
     paper.add_argument("--out", type=Path, metavar="DIR", help="folder of page and runs (runs/paper-NAME)")
@@ -112,6 +134,9 @@ def _parser() -> argparse.ArgumentParser:
     paper.add_argument("--seeds", type=int, metavar="N", help="runs a scenario behind tables of final poses")
     paper.add_argument("--jobs", type=int, metavar="N", help="processes at a time (one a processor)")
 
+
+def _add_frames_command(commands: _Commands) -> None:
+    """Adds `hilbed frames`."""
     frames = _command(commands, "frames", _frames, "render frames with truth into a dataset")
     _add_scenario(frames)
     frames.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder of the dataset")
@@ -119,6 +144,9 @@ def _parser() -> argparse.ArgumentParser:
     frames.add_argument("--seed", type=int, metavar="N", help="seed of all random streams")
     frames.add_argument("--force", action="store_true", help="replace another dataset")
 
+
+def _add_vision(commands: _Commands) -> None:
+    """Adds `hilbed vision`."""
     vision = _command(commands, "vision", _vision, "score a detector on rendered frames, or on a dataset")
     vision.add_argument(
         "scenario", metavar="SCENARIO|DATASET|FRAMES",
@@ -138,6 +166,9 @@ def _parser() -> argparse.ArgumentParser:
     vision.add_argument("--force", action="store_true", help="replace what an earlier command has written")
     vision.add_argument("--json", action="store_true", help="print vision.json on stdout and nothing else")
 
+
+def _add_readers(commands: _Commands) -> None:
+    """Adds what reads scenarios and finished runs."""
     _command(commands, "list", _list, "list the bundled scenarios")
     check = _command(commands, "check", _check, "validate a scenario and print every error with its line")
     _add_scenario(check)
@@ -146,6 +177,13 @@ def _parser() -> argparse.ArgumentParser:
     fit = _command(commands, "fit", _fit, "print the noise, delay and offset that explain a run with truth")
     fit.add_argument("run", type=Path, metavar="RUN", help="a run folder")
     fit.add_argument("--fraction", type=float, default=0.5, help="first part of the run that is used (0.5)")
+
+
+def _add_desk(commands: _Commands) -> None:
+    """Adds what goes with a bus: a drive, a replay, the tools."""
+    from hilbed.bustools.options import add_tools
+    from hilbed.conformance.options import add_options as add_conformance_options
+
     drive = _command(commands, "drive", _drive, "be a whole simulated drive on a bus, in real time")
     add_drive_options(drive)
     replay = _command(commands, "replay", _replay, "play a run's bus into odometry, estimator and controller")
@@ -157,14 +195,15 @@ def _parser() -> argparse.ArgumentParser:
         commands, "conformance", _conformance, "check a CiA 402 drive on a bus, told a speed or a position"
     )
     add_conformance_options(conformance)
+
+
+def _add_bench(commands: _Commands) -> None:
+    """Adds `hilbed bench`."""
     bench = _command(commands, "bench", _bench, "measure floor, total and where the time goes")
     bench.add_argument("scenario", nargs="?", default="demo", metavar="SCENARIO")
-    return parser
 
 
-def _command(
-    commands: argparse._SubParsersAction[_Parser], name: str, function: object, text: str
-) -> _Parser:
+def _command(commands: _Commands, name: str, function: object, text: str) -> _Parser:
     parser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
     parser.set_defaults(command=function)
     return parser

@@ -83,6 +83,7 @@ class LocalEye:
         self.beacons = tuple(beacons)
         self.cost = cost
         self._imager, self._detector = imager, detector
+        self._talking = detector if isinstance(detector, Talking) else None
 
     def look(self, exposure: Exposure) -> Ticket:
         """Exposes a frame."""
@@ -107,8 +108,7 @@ class LocalEye:
             findings = self._findings(shot, centre, pan)
         except DetectionFailed as failed:
             return Glimpse(shot.image, [], failed.trouble, failed.trouble.said)
-        said = self._detector.said if isinstance(self._detector, Talking) else ""
-        return Glimpse(shot.image, findings, said=said)
+        return Glimpse(shot.image, findings, said=self._talking.said if self._talking else "")
 
     def _findings(self, shot: Shot, centre: Pose, pan: float) -> list[Finding]:
         """Returns what the detector finds, beside the truth as seen from the optical centre."""
