@@ -23,19 +23,18 @@ def bench(scenario: str) -> int:
     """Runs a scenario with all recorders on, prints its cost and that of particles; returns the run's status.
 
     floor / total = (cost.physics + cost.render) / wall_time, both from the same run. On two processors or
-    more the camera renders and detects in a process of its own, beside the rest.
+    more the camera renders and detects in a process of its own, and another one writes the logs.
     """
     loaded = load(scenario, ["record=all"])
-    beside = processors() > 1
     with TemporaryDirectory(prefix="hilbed-bench-") as folder:
-        outcome = perform(loaded, RunFolder(Path(folder) / "run"), separate=beside)
-    memory, child = _peak(resource.RUSAGE_SELF), _peak(resource.RUSAGE_CHILDREN)
+        outcome = perform(loaded, RunFolder(Path(folder) / "run"), separate=processors() > 1)
+    memory, largest = _peak(resource.RUSAGE_SELF), _peak(resource.RUSAGE_CHILDREN)
     verdict = outcome.verdict
     if not verdict["sim_time"]:
         print(f"{loaded.name}: {verdict['reason']}", file=sys.stderr)
         return outcome.status
-    print(_table(loaded.name, verdict, beside))
-    print(f"peak memory: {memory:.0f} MB, of the camera's process {child:.0f} MB")
+    print(_table(loaded.name, verdict))
+    print(f"peak memory: {memory:.0f} MB, of the largest process beside it {largest:.0f} MB")
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
     print(bench_particles.report())
     return outcome.status
@@ -45,16 +44,17 @@ def _peak(who: int) -> float:
     return resource.getrusage(who).ru_maxrss / 1024
 
 
-def _table(name: str, verdict: Mapping[str, Any], beside: bool) -> str:
-    cost, wall, simulated = verdict["cost"], verdict["wall_time"], verdict["sim_time"]
-    apart = ("render", "vision") if beside else ()
-    rest = wall - sum(spent for part, spent in cost.items() if part not in apart)
+def _table(name: str, verdict: Mapping[str, Any]) -> str:
+    cost, beside = verdict["cost"], verdict["cost_beside"]
+    wall, simulated = verdict["wall_time"], verdict["sim_time"]
+    rest = wall - sum(cost.values()) + sum(beside.values())
     lines = [
         f"{name}: {simulated:g} s simulated in {wall:.2f} s, {simulated / wall:.1f} x real time",
         f"{'part':12}{'s':>9}{'ms a simulated s':>20}{'of the total':>14}",
     ]
     for part, spent in {**cost, "the rest": rest}.items():
-        where = "  beside the rest" if part in apart else ""
+        apart = beside.get(part, 0.0)
+        where = f"  {1e3 * apart / simulated:.2f} ms of it in a process beside" if apart else ""
         lines.append(f"{part:12}{spent:9.3f}{1e3 * spent / simulated:20.2f}{spent / wall:14.1%}{where}")
     floor = cost["physics"] + cost["render"]
     lines.append(f"floor (physics + render) / total: {floor:.2f} s / {wall:.2f} s = {floor / wall:.3f}")

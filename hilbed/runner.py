@@ -19,7 +19,7 @@ from hilbed import collector, loop, verdict, yaml12
 from hilbed.build import Bench, build
 from hilbed.build.elsewhere import check_armed
 from hilbed.clock import SECOND, nanos, seconds
-from hilbed.cost import Cost, perf_counter
+from hilbed.cost import Cost, perf_counter, since
 from hilbed.pacer import Pacer
 from hilbed.ports import Sensor
 from hilbed.record.columns import Columns
@@ -73,6 +73,7 @@ class _Ending:
         self.trace = ""
         self.wall = 0.0
         self.cost = Cost().as_dict()
+        self.beside = Cost().as_dict()
         self.last: Nanos = 0
 
     def set(self, status: int, reason: str, trace: str = "") -> None:
@@ -107,7 +108,8 @@ def perform(
 ) -> Outcome:
     """Builds the bench of a scenario, runs it and judges it; with a folder the run is written there.
 
-    separate: cameras render in processes of their own; the run is the same, only quicker on two processors.
+    separate: cameras render in processes of their own, and the logs are written in one; the run is the same,
+    only quicker on two processors.
     armed: whether real motors may turn.
 
     Raises ScenarioError for what is found before the first cycle, when nothing has been written yet.
@@ -118,7 +120,7 @@ def perform(
     bench = build(loaded, notes, cost, separate, pacer)
     columns, bus = Columns(bench.drives, bench.kinds), BusDigest()
     try:
-        sinks = [] if folder is None else _logs(bench, loaded, folder)
+        sinks = [] if folder is None else _logs(bench, loaded, folder, separate)
         helping = 0 if pacer else HELPING
         journal = Journal(notes, [columns, bus, *sinks], cost, bench.start, bench.reference, helping)
         _run(bench, journal, nanos(loaded.scenario.duration), watch or Watch(), ending)
@@ -141,6 +143,7 @@ def perform(
         sim_time=seconds(ending.last),
         wall_time=ending.wall,
         cost=ending.cost,
+        beside=ending.beside,
         hash=run_hash(signals, bus.digest()),
         signals_hash=signals_hash(signals),
         events=bench.events(),
@@ -200,7 +203,7 @@ def _numbers(counts: Mapping[str, float]) -> dict[str, float | None]:
     return {name: value if isfinite(value) else None for name, value in counts.items()}
 
 
-def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:
+def _logs(bench: Bench, loaded: Loaded, folder: RunFolder, separate: bool) -> list[Sink]:
     """Starts the run folder and returns the logs that the scenario wants in it."""
     packed = pack(loaded.scenario, loaded.folder)  # before an old run goes, which they may be part of
     path = folder.start()
@@ -209,17 +212,21 @@ def _logs(bench: Bench, loaded: Loaded, folder: RunFolder) -> list[Sink]:
     folder.keep(packed.contents)
     if loaded.scenario.record != "all":
         return []
-    from hilbed.record.candump import CandumpLog
-    from hilbed.record.frames import Frames
-    from hilbed.record.mcap import McapLog, Setting
+    from hilbed.record.logs import Plan, open_logs
+    from hilbed.record.mcap import Setting, events
 
-    setting = Setting(bench.beacons, _path(bench, loaded), 0.2, loaded.scenario.disturbances, text)
     if bench.nodes:
         from hilbed.can.dbc import dbc
 
         folder.write(DBC, dbc(bench.nodes))
-    sinks: list[Sink] = [McapLog(path / "log.mcap", bench.power_on, setting), Frames(path / "frames")]
-    return [CandumpLog(path / "can.log", bench.power_on), *sinks] if bench.drives else sinks
+    happening = events(loaded.scenario.disturbances)
+    setting = Setting(bench.beacons, _path(bench, loaded), 0.2, happening, text)
+    plan = Plan(path, bench.power_on, setting, bool(bench.drives))
+    if separate:
+        from hilbed.record.remote import RemoteLogs
+
+        return [RemoteLogs(plan, bench.rig.cost)]
+    return open_logs(plan)
 
 
 def _path(bench: Bench, loaded: Loaded) -> list[tuple[float, float]]:
@@ -234,11 +241,11 @@ def _run(bench: Bench, journal: Journal, duration: Nanos, watch: Watch, ending: 
     cost = bench.rig.cost
     ending.attempt(lambda: bench.boot(lambda: _refuse_to_go_on(watch)))
     if ending.status == PASSED:
-        start, before = perf_counter(), cost.as_dict()
+        start, before = perf_counter(), (cost.as_dict(), dict(cost.beside))
         with collector.paused():
             ending.attempt(lambda: _cycles(bench, journal, duration, watch, ending))
         ending.wall = perf_counter() - start
-        ending.cost = {part: spent - before[part] for part, spent in cost.as_dict().items()}
+        ending.cost, ending.beside = since(before[0], cost.as_dict()), since(before[1], cost.beside)
     ending.attempt(lambda: bench.stop(ending.last))
     ending.attempt(journal.close)
 

@@ -16,7 +16,8 @@ class Account(NamedTuple):
     """What the runner knows of a run besides its signals.
 
     reason: why it ended before its time, else empty; sim_time, wall_time, cost: s; events: what the drives
-    did that they should not have; parts: what some runs have besides, by its key in verdict.json.
+    did that they should not have; beside: of the cost, what other processes spent meanwhile (s); parts: what
+    some runs have besides, by its key in verdict.json.
     """
 
     scenario: str
@@ -28,6 +29,7 @@ class Account(NamedTuple):
     hash: str
     signals_hash: str
     events: Sequence[str] = ()
+    beside: Mapping[str, float] = {}
     parts: Mapping[str, Any] = {}
 
 
@@ -51,6 +53,7 @@ def conclude(
         "wall_time": account.wall_time,
         "real_time_factor": account.sim_time / account.wall_time if account.wall_time > 0 else None,
         "cost": {part: _finite(value) for part, value in account.cost.items()},
+        "cost_beside": {part: _finite(value) for part, value in account.beside.items() if value},
         "hash": account.hash,
         "signals_hash": account.signals_hash,
         "events": list(account.events),

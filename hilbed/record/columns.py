@@ -61,14 +61,14 @@ class Columns:
         """Has nothing to close."""
 
     def _note_row(self, row: Row) -> None:
-        t, _, odometry, _, estimate, _ = row.cycle
+        t, numbers, drives, innovations, cloud = row
         self._rows.append(t * _NS)
-        self._rows.extend(row.numbers)
+        self._rows.extend(numbers)
         for drive in self._drives:
-            self._drive_rows.extend(odometry.drives.get(drive, _UNKNOWN))
-        for innovation in estimate.innovations:
+            self._drive_rows.extend(drives.get(drive, _UNKNOWN))
+        for innovation in innovations:
             self._note_innovation(innovation)
-        self._clouds.note(t, estimate.cloud)
+        self._clouds.note(t, cloud)
 
     def _note_innovation(self, innovation: Innovation) -> None:
         t, nis, dof, accepted = innovation

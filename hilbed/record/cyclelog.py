@@ -33,9 +33,9 @@ class CycleLog:
         """Logs cycles, packed all at once."""
         if not rows:
             return
-        stamps = np.array([row.cycle.t for row in rows]) + self._offset
+        stamps = np.array([row.t for row in rows]) + self._offset
         self._log_cycles(stamps, np.array([row.numbers for row in rows]))
-        drives = {name: _fields(one) for name, one in rows[0].cycle.odometry.drives.items()}
+        drives = {name: _fields(one) for name, one in rows[0].drives.items()}
         if drives:
             log = self._channels.rows("/drives", "Drives", drives)
             widths = [(name, len(fields)) for name, fields in drives.items()]
@@ -64,5 +64,4 @@ def _fields(drive: DriveSignals) -> tuple[str, ...]:
 
 
 def _signals(row: Row, widths: Sequence[tuple[str, int]]) -> list[float]:
-    of = row.cycle.odometry.drives
-    return [number for name, width in widths for number in of[name][:width]]
+    return [number for name, width in widths for number in row.drives[name][:width]]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 
 from hilbed.clock import SECOND
 from hilbed.cost import Cost, perf_counter
@@ -11,6 +11,7 @@ from hilbed.ports import Reference
 from hilbed.record.disk import RecordError
 from hilbed.record.notes import Notes
 from hilbed.record.row import UNKNOWN, Batch, DeadReckoning, Row, Sink, row_of
+from hilbed.record.sinks import Sinks
 from hilbed.types import Array, Cycle, Nanos, Pose
 
 HELPING: Nanos = SECOND // 2
@@ -35,7 +36,7 @@ class Journal:
     ) -> None:
         """helping: ns of simulated time; in real time small ones are better, which hold up no cycle."""
         self._notes = notes
-        self._sinks = list(sinks)
+        self._sinks = Sinks(sinks)
         self._cost = cost
         self._reckoning = DeadReckoning(start)
         self._reference = reference
@@ -67,39 +68,26 @@ class Journal:
 
         Raises RecordError, after all sinks are closed, when a log could not be finished.
         """
-        troubles = [_trouble(self._hand_on)]
-        troubles += [_trouble(sink.close) for sink in self._sinks]
-        self._sinks.clear()
-        for trouble in troubles:
-            if trouble is not None:
-                raise trouble
+        try:
+            self._hand_on()
+        except RecordError:
+            with suppress(RecordError):
+                self._sinks.close()
+            raise
+        self._sinks.close()
 
     def _hand_on(self) -> None:
         notes = self._notes
         rows = [self._row(cycle) for cycle in self._cycles]
         batch = Batch(rows, notes.transfers, notes.readings, notes.snapshots, self._ticks)
-        troubles = [_trouble(partial(sink.take, batch)) for sink in self._sinks]
-        notes.clear()
-        self._cycles.clear()
-        self._ticks.clear()
-        for sink, trouble in zip(tuple(self._sinks), troubles, strict=True):
-            if trouble is not None:
-                self._sinks.remove(sink)
-                _trouble(sink.close)  # what it has written stays readable
-        for trouble in troubles:
-            if trouble is not None:
-                raise trouble
+        try:
+            self._sinks.take(batch)
+        finally:
+            notes.clear()
+            self._cycles.clear()
+            self._ticks.clear()
 
     def _row(self, cycle: Cycle) -> Row:
         odometry = self._reckoning.at(cycle.t, cycle.odometry)
         reference = UNKNOWN if self._reference is None else self._reference.at(cycle.t).pose
         return row_of(cycle, odometry, reference)
-
-
-def _trouble(step: Callable[[], None]) -> RecordError | None:
-    """Does a step and returns what went wrong on the disk, so that the steps after it are done, too."""
-    try:
-        step()
-    except RecordError as error:
-        return error
-    return None

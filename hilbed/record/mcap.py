@@ -32,15 +32,16 @@ class Disturbance(Protocol):
 
 
 class Setting(NamedTuple):
-    """What is known before the run: beacons, reference path (m, m), the robot's radius (m), disturbances.
+    """What is known before the run: beacons, reference path (m, m), the robot's radius (m).
 
-    scenario: text of the resolved scenario, attached to the log.
+    events: what is to happen when, in order of time; scenario: text of the resolved scenario, attached to
+    the log.
     """
 
     beacons: Sequence[BeaconSpec] = ()
     path: Sequence[tuple[float, float]] = ()
     radius: float = 0.2
-    disturbances: Sequence[Disturbance] = ()
+    events: Sequence[tuple[Nanos, str]] = ()
     scenario: str = ""
 
 
@@ -73,7 +74,7 @@ class McapLog:
         self._log_nis = channels.numbers("/nis", "Nis", {"": ("value", "dof", "accepted")})
         self._log_scene = channels.typed("/scene", "SceneUpdate")
         self._log_event = channels.typed("/events", "Log")
-        self._events = events(setting.disturbances)
+        self._events = list(setting.events)
         if setting.scenario:
             channels.attach("scenario.yaml", setting.scenario)
         self._log_scene(scenery.scene(0, setting.beacons, setting.path, setting.radius), log_time=0)
@@ -99,10 +100,9 @@ class McapLog:
         self._file.close()
 
     def _note_row(self, row: Row) -> None:
-        t = row.cycle.t
-        for innovation in row.cycle.estimate.innovations:
+        for innovation in row.innovations:
             self._note_innovation(innovation)
-        while self._events and self._events[0][0] <= t:
+        while self._events and self._events[0][0] <= row.t:
             at, message = self._events.pop(0)
             at += self._offset
             self._log_event(self._scenery.event(at, message), log_time=at)

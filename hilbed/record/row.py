@@ -7,7 +7,18 @@ from math import nan
 from typing import NamedTuple, Protocol
 
 from hilbed.poses import moved
-from hilbed.types import Array, Cycle, Nanos, Odometry, Pose, Reading, Snapshot, Transfer
+from hilbed.types import (
+    Array,
+    Cycle,
+    DriveSignals,
+    Innovation,
+    Nanos,
+    Odometry,
+    Pose,
+    Reading,
+    Snapshot,
+    Transfer,
+)
 
 UNKNOWN = Pose(nan, nan, nan)
 
@@ -24,11 +35,15 @@ class Row(NamedTuple):
     """A control period and its numbers, worked out once for all sinks.
 
     numbers: truth, odometry by dead reckoning, reference (3 each), command (2), estimate (3), covariance (9),
-    landmark distance; of the odometry: when it was sampled (s), distance, turn, v, w (5).
+    landmark distance; of the odometry: when it was sampled (s), distance, turn, v, w (5). drives: by name, as
+    the controller sees them; innovations, cloud: those of the estimate.
     """
 
-    cycle: Cycle
+    t: Nanos
     numbers: list[float]
+    drives: Mapping[str, DriveSignals]
+    innovations: Sequence[Innovation]
+    cloud: Array | None = None
 
 
 WIDTH = 29  # numbers a row
@@ -41,9 +56,9 @@ def row_of(cycle: Cycle, odometry: Pose, reference: Pose) -> Row:
     for line in estimate.covariance.tolist()[:3]:
         numbers += line[:3]
     numbers.append(estimate.landmark_distance)
-    sampled, distance, turn, v, w, _ = cycle.odometry
+    sampled, distance, turn, v, w, drives = cycle.odometry
     numbers += (sampled * 1e-9, distance, turn, v, w)
-    return Row(cycle, numbers)
+    return Row(cycle.t, numbers, drives, estimate.innovations, estimate.cloud)
 
 
 class Batch(NamedTuple):

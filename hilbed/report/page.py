@@ -124,19 +124,23 @@ def base64(data: bytes) -> str:
 
 
 def cost(run: Run) -> str | None:
-    """Returns where the wall time went, as one bar and a table."""
+    """Returns where the wall time went, as one bar and a table with a column for what other processes did."""
     parts = {name: value for name, value in (run.verdict.get("cost") or {}).items() if value}
+    beside: Mapping[str, float] = run.verdict.get("cost_beside") or {}
     wall = run.verdict.get("wall_time") or 0.0
     if not parts or not wall:
         return None
+    parts = {name: max(value - beside.get(name, 0.0), 0.0) for name, value in parts.items()}
     parts["the rest"] = max(wall - sum(parts.values()), 0.0)
     bar = rows = ""
     for (name, value), colour in zip(parts.items(), _PARTS, strict=False):
-        share = 100 * value / max(wall, sum(parts.values()))
+        share = 100 * value / wall
+        apart = f"{number(beside[name])} s beside" if beside.get(name) else ""
         bar += f'<i style="width:{share:.2f}%;background:{colour}" title="{escape(name)}"></i>'
         rows += (
             f'<tr><th><i class="dot" style="background:{colour}"></i>{escape(name)}</th>'
-            f'<td class="number">{number(value)} s</td><td class="number">{share:.1f} %</td></tr>'
+            f'<td class="number">{number(value)} s</td><td class="number">{share:.1f} %</td>'
+            f'<td class="number">{apart}</td></tr>'
         )
     return f'<div class="stack">{bar}</div><table><tbody>{rows}</tbody></table>'
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 import pickle
 import socket
-import sys
 from contextlib import suppress
 from io import BufferedRWPair
 from mmap import mmap
-from subprocess import DEVNULL, Popen, TimeoutExpired
+from subprocess import Popen, TimeoutExpired
 from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
 import numpy as np
 
+from hilbed import offspring
 from hilbed.cost import Cost, perf_counter
 from hilbed.sensors.exposure import Exposure
 from hilbed.sensors.eye import Glimpse, Setting, Ticket
@@ -90,8 +90,9 @@ class RemoteEye:
         findings, trouble, said, render, vision = self._receive()
         glimpse = Glimpse(self._image.copy(), findings, trouble, said)
         self._asked = False
-        self.cost.render += render
-        self.cost.vision += vision + perf_counter() - start
+        self.cost.add_beside("render", render)
+        self.cost.add_beside("vision", vision)
+        self.cost.vision += perf_counter() - start
         return glimpse
 
     def _send(self, message: object) -> None:
@@ -134,26 +135,14 @@ class RemoteEye:
 
 
 def _start(size: int) -> tuple[Popen[bytes], socket.socket, mmap]:
-    """Returns a new child, this end of the line to it and the memory (bytes) that both see.
-
-    It finds modules where this process does, and Ctrl-C does not hit it.
-    """
-    path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
+    """Returns a new child, this end of the line to it and the memory (bytes) that both see."""
     memory = os.memfd_create("hilbed-frame")
     ours, theirs = socket.socketpair()
     try:
         os.truncate(memory, size)
         shared = mmap(memory, 0)
-        child = Popen(
-            [sys.executable, "-P", "-m", CHILD, str(theirs.fileno()), str(memory)],
-            env={**os.environ, "PYTHONPATH": path},
-            pass_fds=(theirs.fileno(), memory),
-            process_group=0,
-            stdin=DEVNULL,
-            stdout=DEVNULL,
-            stderr=DEVNULL,
-        )
-        return child, ours, shared
+        ends = theirs.fileno(), memory
+        return offspring.start(CHILD, ends, keep=ends), ours, shared
     except OSError:
         ours.close()
         raise

@@ -16,14 +16,12 @@ from typing import Any
 import numpy as np
 
 from hilbed import collector
+from hilbed.aside import Aside
 from hilbed.cost import Cost
 from hilbed.sensors.camera import open_eye
 from hilbed.sensors.remote import EyeLost
 from hilbed.types import HilbedError, Image
 from hilbed.vision.lifeline import end_with
-
-_STAT = 1024  # bytes of /proc/PID/stat, enough for all of it
-_PROCESSOR = 36  # of the words after the name in /proc/PID/stat: where it ran last
 
 
 def requests(line: BufferedRWPair) -> Iterator[Any]:
@@ -49,37 +47,16 @@ def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     asked: first spec and setting, then the exposure of each frame.
     """
     spec, setting = next(asked)
-    cost, processors = Cost(), os.sched_getaffinity(0)
+    cost = Cost()
     eye = open_eye(spec, setting, cost)
-    bench = watch(os.getppid())
+    aside = Aside(os.getppid())
     yield None
     for exposure in asked:
-        step_aside(processors, bench)
+        aside.step()
         render, vision = cost.render, cost.vision
         image, *told = eye.look(exposure)()
         np.copyto(shared.reshape(image.shape), image)
         yield *told, cost.render - render, cost.vision - vision
-
-
-def watch(process: int) -> int:
-    """Returns a descriptor of what the system tells of a process, −1 where it tells nothing."""
-    try:
-        return os.open(f"/proc/{process}/stat", os.O_RDONLY | os.O_CLOEXEC)
-    except OSError:
-        return -1
-
-
-def step_aside(processors: set[int], bench: int) -> None:
-    """Keeps this process off the one of its processors that the bench runs on, if there is another.
-
-    Some schedulers wake a process where the one that wakes it runs, even if another processor is idle; then
-    a frame would stop the physics for as long as it takes. bench: what `watch` gave.
-    """
-    with suppress(OSError):  # the bench has gone, or /proc is not there: then things stay as they are
-        status = os.pread(bench, _STAT, 0).rpartition(b")")[2].split()
-        others = processors - {int(status[_PROCESSOR])}
-        if others and others != os.sched_getaffinity(0):
-            os.sched_setaffinity(0, others)
 
 
 def main() -> None:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import os
 import signal
 import socket
-import sys
 from contextlib import suppress
 from mmap import mmap
-from subprocess import DEVNULL, Popen
+from subprocess import Popen
+
+from hilbed import offspring
 
 
 def start(module: str, size: int) -> tuple[Popen[bytes], socket.socket, int, mmap]:
     """Returns a new child, this end of the line to it, what it prints, and memory (bytes) that both see.
 
-    It finds modules where this process does; its own hashes of strings are always the same.
+    Its own hashes of strings are always the same.
     """
-    path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
     memory = os.memfd_create("hilbed-shot")
     ours, theirs = socket.socketpair()
     printed, printing = os.pipe()
@@ -24,14 +24,13 @@ def start(module: str, size: int) -> tuple[Popen[bytes], socket.socket, int, mma
     try:
         os.truncate(memory, size)
         shared = mmap(memory, 0)
-        child = Popen(
-            [sys.executable, "-P", "-u", "-m", module, *map(str, (theirs.fileno(), memory, os.getpid()))],
-            env={**os.environ, "PYTHONPATH": path, "PYTHONHASHSEED": "0"},
-            pass_fds=(theirs.fileno(), memory),
-            process_group=0,
-            stdin=DEVNULL,
+        child = offspring.start(
+            module,
+            (theirs.fileno(), memory, os.getpid()),
+            keep=(theirs.fileno(), memory),
             stdout=printing,
             stderr=printing,
+            environment={"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"},
         )
         return child, ours, printed, shared
     except OSError:

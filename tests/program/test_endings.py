@@ -37,20 +37,20 @@ def test_a_full_disk_ends_the_run_with_3_and_its_name_and_keeps_the_logs(small_d
     import can
     from mcap.reader import make_reader
 
-    ended = hilbed("run", "slimane2014/load-torque", "--out", small_disk / "run", "--json")
+    out = small_disk / "run"
+    ended = hilbed("run", "slimane2014/load-torque", "--set", "duration=100", "--out", out, "--json")
     assert ended.status == 3, ended.err
     told = json.loads(ended.out)
-    assert told == json.loads((small_disk / "run" / "verdict.json").read_text())
+    assert told == json.loads((out / "verdict.json").read_text())
     assert told["passed"] is False
     assert told["reason"].startswith("t = ")
     assert told["reason"].endswith("No space left on device")
-    assert 0.5 < told["sim_time"] < 8
-    frames = list(can.LogReader(small_disk / "run" / "can.log"))
-    assert frames[-1].timestamp > told["sim_time"]
-    with (small_disk / "run" / "log.mcap").open("rb") as stream:
+    assert 0.5 < told["sim_time"] < 90, "soon after it is full"
+    frames = list(can.LogReader(out / "can.log"))
+    with (out / "log.mcap").open("rb") as stream:
         last = [message.log_time for _, _, message in make_reader(stream).iter_messages()][-1]
-    assert last / 1e9 > told["sim_time"]
-    assert {entry.name for entry in (small_disk / "run").iterdir()} <= {
+    assert min(last / 1e9, frames[-1].timestamp) > 3
+    assert {entry.name for entry in out.iterdir()} <= {
         "scenario.yaml", "can.log", "bus.dbc", "log.mcap", "verdict.json",
     }  # fmt: skip
 

@@ -32,7 +32,7 @@ class ForGood:
 SETTING = Setting(
     beacons=[BeaconSpec(at=(1.0, 2.0), colour="blue")],
     path=[(0.0, 0.0), (3.0, 0.0)],
-    disturbances=[Bump()],
+    events=events([Bump()]),
     scenario="seed: 1\n",
 )
 

@@ -39,7 +39,7 @@ def test_verdict_json_has_the_keys_of_the_contract() -> None:
     content = concluded(estimate_position_max=criterion(max=1.0))
     assert set(content) == {
         "scenario", "seed", "passed", "reason", "criteria", "metrics", "sim_time", "wall_time",
-        "real_time_factor", "cost", "hash", "signals_hash", "events",
+        "real_time_factor", "cost", "cost_beside", "hash", "signals_hash", "events",
     }  # fmt: skip
     assert content["passed"] is True
     assert content["reason"] == ""

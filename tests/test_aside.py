@@ -1,4 +1,4 @@
-"""Where the camera's own process runs."""
+"""Where processes that work for the bench run."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from hilbed.sensors.remote_child import step_aside, watch
+from hilbed.aside import Aside
 
 
 @pytest.fixture
@@ -19,9 +19,7 @@ def processors() -> Iterator[set[int]]:
 
 
 def test_keeps_off_the_one_that_the_bench_runs_on(processors: set[int]) -> None:
-    bench = watch(os.getpid())
-    step_aside(processors, bench)
-    os.close(bench)
+    Aside(os.getpid()).step()
     left = os.sched_getaffinity(0)
     assert left < processors or len(processors) == 1
     assert len(left) == max(1, len(processors) - 1)
@@ -29,9 +27,8 @@ def test_keeps_off_the_one_that_the_bench_runs_on(processors: set[int]) -> None:
 
 def test_stays_where_it_is_when_the_bench_has_gone(processors: set[int]) -> None:
     child = os.posix_spawnp("true", ["true"], os.environ)
-    bench = watch(child)
+    aside = Aside(child)
     os.waitpid(child, 0)
-    step_aside(processors, bench)
-    os.close(bench)
-    assert watch(child) == -1
+    aside.step()
+    Aside(child).step()
     assert os.sched_getaffinity(0) == processors
