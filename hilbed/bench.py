@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any
 
-from hilbed import bench_particles
+from hilbed import bench_particles, compiled
 from hilbed.record.folder import RunFolder
 from hilbed.runner import perform, processors
 from hilbed.scenario.load import load
@@ -34,6 +34,7 @@ def bench(scenario: str) -> int:
         print(f"{loaded.name}: {verdict['reason']}", file=sys.stderr)
         return outcome.status
     print(_table(loaded.name, verdict))
+    print(f"firmware and wire: {'compiled' if compiled.active() else 'from their sources'}")
     print(f"peak memory: {memory:.0f} MB, of the largest process beside it {largest:.0f} MB")
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
     print(bench_particles.report())

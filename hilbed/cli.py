@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn, TypeAlias
 
-from hilbed import __version__
+from hilbed import __version__, compiled
 from hilbed.busoptions import add_bus
 from hilbed.drive.arguments import add_options as add_drive_options
 
@@ -36,6 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         # Matrices here are 3 × 3: threads only cost. To be said before numpy is imported.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        compiled.prefer()
         status = _status(_parser().parse_args(arguments))
     except KeyboardInterrupt:
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
-import signal
 from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
@@ -16,6 +15,7 @@ from hilbed.console import end_progress, progress, quiet_pipe
 from hilbed.scenario.load import load
 from hilbed.scenario.model import Scenario
 from hilbed.types import HilbedError, ScenarioError
+from hilbed.workers import prepare
 
 Settings = tuple[str, ...]
 
@@ -74,7 +74,7 @@ def side_by_side(todo: Sequence[Job], jobs: int | None) -> list[Result]:
     """Runs jobs in `jobs` processes, else one a processor, and returns the results in their order."""
     workers = max(1, min(jobs or os.cpu_count() or 1, len(todo)))
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context, initializer=_deaf) as pool:
+    with ProcessPoolExecutor(workers, mp_context=context, initializer=prepare) as pool:
         return run_all(todo, pool)
 
 
@@ -148,11 +148,6 @@ def run_all(jobs: Sequence[Job], pool: Executor) -> list[Result]:
         ) from None
     finally:
         end_progress()
-
-
-def _deaf() -> None:
-    """Leaves Ctrl-C, which comes to every process of a terminal, to the one that leads the sweep."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def run_job(job: Job) -> Result:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import signal
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, as_completed
@@ -16,6 +15,7 @@ from hilbed.console import end_progress, progress
 from hilbed.paper.kept import finished
 from hilbed.paper.plan import End, Experiment
 from hilbed.types import HilbedError, Pose
+from hilbed.workers import prepare
 
 KILLED = "a process has ended before its run: killed, or out of memory?"
 
@@ -66,7 +66,7 @@ def perform_all(experiments: Sequence[Experiment], ends: Sequence[End], jobs: in
         *((one, partial(run, one, force)) for one in experiments),
         *((one, partial(final_pose, one)) for one in ends),
     ]
-    with ProcessPoolExecutor(min(jobs, len(work)) or 1, mp_context=context, initializer=_deaf) as pool:
+    with ProcessPoolExecutor(min(jobs, len(work)) or 1, mp_context=context, initializer=prepare) as pool:
         try:
             futures = {pool.submit(task): what for what, task in work}
             for done, future in enumerate(as_completed(futures), 1):
@@ -80,11 +80,6 @@ def perform_all(experiments: Sequence[Experiment], ends: Sequence[End], jobs: in
         finally:
             end_progress()
     return results
-
-
-def _deaf() -> None:
-    """Leaves Ctrl-C, which comes to every process of a terminal, to the one that leads."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def run(experiment: Experiment, force: bool) -> Done:

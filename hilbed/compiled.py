@@ -1,0 +1,81 @@
+"""Firmware and wire as machine code, where they lie ready and were made from the sources as they are.
+
+Compiled they do the same to the bit in half the time. `scripts/compile.py` makes them; without it, or after a
+change of the sources, the sources themselves run: so they do in tests and debuggers, too, which do not ask.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from functools import cached_property
+from hashlib import sha256
+from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec
+from importlib.util import spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+ROOT = Path(__file__).parent.parent
+"""Where the packages are."""
+
+WIRE = ("arbitration", "contests", "frame_length", "port", "queues", "wire")
+"""The modules of hilbed.can that are compiled."""
+
+# What surrounds the firmware waits for its bus, or only writes its EDS file: nothing is won there.
+_LEFT_OUT = ("__init__.py", "__main__.py", "process.py", "eds.py")
+_PREFIXES = ("firmware_sim.", "hilbed.can.")
+_OFF = "HILBED_COMPILED"
+"""Set to `no`, this variable has the sources run."""
+
+
+def modules() -> list[Path]:
+    """Returns the sources that are to be compiled, relative to ROOT."""
+    firmware = [path for path in ROOT.glob("firmware_sim/**/*.py") if path.name not in _LEFT_OUT]
+    return sorted(path.relative_to(ROOT) for path in (*firmware, *_wire()))
+
+
+def _wire() -> list[Path]:
+    return [ROOT / "hilbed" / "can" / f"{name}.py" for name in WIRE]
+
+
+def place() -> Path:
+    """Returns the folder for what is compiled from the present sources for this Python."""
+    digest = sha256(sys.version.encode())
+    used = [ROOT / "hilbed" / name for name in ("compiled.py", "types.py", "clock.py")]
+    for path in sorted((*ROOT.glob("firmware_sim/**/*.py"), *ROOT.glob("hilbed/can/*.py"), *used)):
+        digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
+    return Path(sys.prefix) / "hilbed-compiled" / digest.hexdigest()[:16]
+
+
+class Compiled:
+    """Finds the compiled modules, where there are any, before their sources are found."""
+
+    @cached_property
+    def files(self) -> dict[str, Path]:
+        """Where each module lies, by its name; looked for when the first of them is wanted."""
+        suffix, folder = EXTENSION_SUFFIXES[0], place()
+        found = folder.rglob(f"*{suffix}") if folder.is_dir() else ()
+        return {".".join(path.relative_to(folder).parts).removesuffix(suffix): path for path in sorted(found)}
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Returns where a module is to be loaded from; None where its source will do."""
+        del path, target
+        if not name.startswith(_PREFIXES) and not name.endswith("__mypyc"):
+            return None
+        file = self.files.get(name)
+        return spec_from_file_location(name, file) if file else None
+
+
+def prefer() -> None:
+    """Has the compiled modules imported from now on, where there are any, unless HILBED_COMPILED is `no`."""
+    if os.environ.get(_OFF) != "no" and not any(isinstance(one, Compiled) for one in sys.meta_path):
+        sys.meta_path.insert(0, Compiled())
+
+
+def active() -> bool:
+    """Tells whether the firmware that is in use is a compiled one."""
+    module = sys.modules.get("firmware_sim.drive")
+    return module is not None and (module.__file__ or "").endswith(EXTENSION_SUFFIXES[0])
