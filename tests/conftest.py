@@ -1,10 +1,18 @@
-"""Property tests: no wall time anywhere, and in CI the same examples every time."""
+"""Property tests: no wall time anywhere, and in CI the same examples every time.
+
+With HILBED_COMPILED=yes the tests run on compiled firmware and wire, where there are any.
+"""
 
 from __future__ import annotations
 
 import os
 
 from hypothesis import settings
+
+from hilbed import compiled
+
+if os.environ.get("HILBED_COMPILED") == "yes":
+    compiled.prefer()
 
 settings.register_profile("bench", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)

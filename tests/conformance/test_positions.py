@@ -43,6 +43,7 @@ def test_it_is_left_where_it_was_told_to_be() -> None:
     assert abs(desk.shaft.speed) < 0.02
 
 
+@pytest.mark.sources
 @pytest.mark.parametrize(
     ("mode", "where", "name", "broken", "check"),
     [

@@ -123,6 +123,7 @@ COMMAND_WORDS = {
 OPTIONAL = {(State.READY, Command.ENABLE), (State.QUICK_STOP, Command.ENABLE)}
 
 
+@pytest.mark.sources
 @pytest.mark.parametrize("lost", [pair for pair in TRANSITIONS if pair not in OPTIONAL])
 def test_a_transition_that_is_missing_is_found(
     lost: tuple[State, Command], monkeypatch: pytest.MonkeyPatch
@@ -132,6 +133,7 @@ def test_a_transition_that_is_missing_is_found(
     assert failed(examined(drive()))
 
 
+@pytest.mark.sources
 @pytest.mark.parametrize(
     "wrong",
     [
@@ -209,6 +211,7 @@ def _forgetful(desk: Desk) -> None:
     pdos._on_sync = sometimes
 
 
+@pytest.mark.sources
 @pytest.mark.parametrize(
     ("break_it", "checks"),
     [

@@ -24,6 +24,7 @@ from tests.firmware.noise import Noise
 from tests.firmware.wire import MILLISECOND, NODE, enabled
 
 
+@pytest.mark.sources
 @pytest.mark.parametrize("seed", range(4))
 def test_a_hundred_thousand_frames(seed: int) -> None:
     watched, ticks = fuzz(25_000, seed)

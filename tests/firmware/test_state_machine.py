@@ -64,6 +64,7 @@ def survivors(
     return count, unnoticed
 
 
+@pytest.mark.sources
 def test_a_wrong_transition_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever becomes of an entry the axis behaves differently, but where an added one leads nowhere.
 
@@ -76,6 +77,7 @@ def test_a_wrong_transition_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [key for key, value in unnoticed if value not in (key[0], None) and key != guarded] == []
 
 
+@pytest.mark.sources
 def test_a_wrong_quick_stop_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     count, unnoticed = survivors(monkeypatch, "QUICK_STOPS", [None, *STOPS], [*QUICK_STOPS])
     assert count == len(QUICK_STOPS) * len(STOPS)
@@ -83,6 +85,7 @@ def test_a_wrong_quick_stop_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert unnoticed == [(6, Stop(Ramp.COAST, State.QUICK_STOP))]
 
 
+@pytest.mark.sources
 def test_a_wrong_option_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only the options of transitions that exist; a quick stop has its own table."""
     keys = [key for key, target in TRANSITIONS.items() if target is not State.QUICK_STOP]
