@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 WHOLE = (
     "axis.py", "cia402.py", "course.py", "cyclic_position.py", "homing.py", "place.py", "positioner.py",
     "profile_position.py", "sdo.py",
@@ -18,6 +20,7 @@ TESTS = (
 )  # fmt: skip
 
 
+@pytest.mark.sources
 def test_no_line_and_no_branch_is_left_out(tmp_path: Path) -> None:
     here, coverage = Path(__file__).parent, (sys.executable, "-m", "coverage")
     data, report = f"--data-file={tmp_path / 'data'}", tmp_path / "report.json"
