@@ -34,7 +34,7 @@ def bench(scenario: str) -> int:
         print(f"{loaded.name}: {verdict['reason']}", file=sys.stderr)
         return outcome.status
     print(_table(loaded.name, verdict))
-    print(f"firmware and wire: {'compiled' if compiled.active() else 'from their sources'}")
+    print(f"firmware, bus and EKF: {'compiled' if compiled.active() else 'from their sources'}")
     print(f"peak memory: {memory:.0f} MB, of the largest process beside it {largest:.0f} MB")
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
     print(bench_particles.report())

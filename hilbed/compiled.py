@@ -1,7 +1,8 @@
-"""Firmware and wire as machine code, where they lie ready and were made from the sources as they are.
+"""What a run spends its time in as machine code, where it lies ready and was made from the present sources.
 
-Compiled they do the same to the bit in half the time. `scripts/compile.py` makes them; without it, or after a
-change of the sources, the sources themselves run: so they do in tests and debuggers, too, which do not ask.
+Compiled, firmware, wire, the controller's end of it and the EKF do the same to the bit in less time.
+`scripts/compile.py` makes them; without it, or after a change of the sources, the sources themselves run: so
+they do in tests and debuggers, too, which do not ask.
 """
 
 from __future__ import annotations
@@ -19,12 +20,19 @@ from types import ModuleType
 ROOT = Path(__file__).parent.parent
 """Where the packages are."""
 
-WIRE = ("arbitration", "contests", "frame_length", "port", "queues", "wire")
-"""The modules of hilbed.can that are compiled."""
+PARTS = {
+    "can": (
+        "arbitration", "axis", "base", "contests", "ears", "frame_length", "nmt", "port", "position_axis",
+        "queues", "set_point", "station", "stations", "wire",
+    ),
+    "estimation": ("association", "dead_reckoning", "ekf", "measurement", "motion", "timeline"),
+}  # fmt: skip
+"""The modules of hilbed's packages that are compiled; of the firmware, nearly all are."""
 
 # What surrounds the firmware waits for its bus, or only writes its EDS file: nothing is won there.
 _LEFT_OUT = ("__init__.py", "__main__.py", "process.py", "eds.py")
-_PREFIXES = ("firmware_sim.", "hilbed.can.")
+_USED = ("compiled", "types", "ports", "clock", "angles", "chords")
+_PREFIXES = ("firmware_sim.", *(f"hilbed.{part}." for part in PARTS))
 _OFF = "HILBED_COMPILED"
 """Set to `no`, this variable has the sources run."""
 
@@ -32,18 +40,16 @@ _OFF = "HILBED_COMPILED"
 def modules() -> list[Path]:
     """Returns the sources that are to be compiled, relative to ROOT."""
     firmware = [path for path in ROOT.glob("firmware_sim/**/*.py") if path.name not in _LEFT_OUT]
-    return sorted(path.relative_to(ROOT) for path in (*firmware, *_wire()))
-
-
-def _wire() -> list[Path]:
-    return [ROOT / "hilbed" / "can" / f"{name}.py" for name in WIRE]
+    parts = [ROOT / "hilbed" / part / f"{name}.py" for part, names in PARTS.items() for name in names]
+    return sorted(path.relative_to(ROOT) for path in (*firmware, *parts))
 
 
 def place() -> Path:
     """Returns the folder for what is compiled from the present sources for this Python."""
     digest = sha256(sys.version.encode())
-    used = [ROOT / "hilbed" / name for name in ("compiled.py", "types.py", "clock.py")]
-    for path in sorted((*ROOT.glob("firmware_sim/**/*.py"), *ROOT.glob("hilbed/can/*.py"), *used)):
+    used = [ROOT / "hilbed" / f"{name}.py" for name in _USED]
+    parts = [path for part in PARTS for path in ROOT.glob(f"hilbed/{part}/*.py")]
+    for path in sorted((*ROOT.glob("firmware_sim/**/*.py"), *parts, *used)):
         digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
     return Path(sys.prefix) / "hilbed-compiled" / digest.hexdigest()[:16]
 

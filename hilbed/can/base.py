@@ -39,7 +39,7 @@ class CanBase:
         self._robot = robot
         self._bus = bus
         self._axes = tuple(map(axis_of, nodes))
-        self._real = tuple(axis for axis in self._axes if axis.node.kind == "real")
+        self._elsewhere = tuple(axis for axis in self._axes if axis.node.kind == "real")
         self._stopping = False
         self.ears = Ears(self._axes)
         self._stations = stations(self._axes)
@@ -100,7 +100,8 @@ class CanBase:
         if self._sync is None:
             for axis in self._axes:
                 axis.heard = axis.alive = t
-        self._sync, self._sync_before = t, self._sync
+        self._sync_before = self._sync
+        self._sync = t
         self._syncs += 1
         for axis, target in zip(self._axes, self._robot.wheel_speeds(command), strict=True):
             axis.ask(target)
@@ -171,7 +172,7 @@ class CanBase:
 
         And real drives that are no longer enabled though nobody has stopped them.
         """
-        for axis in self._real:
+        for axis in self._elsewhere:
             if axis.state != ENABLED_BITS and not self._stopping:
                 state = cia402.state_of(axis.values[STATUS])
                 words = self._last_words(axis)

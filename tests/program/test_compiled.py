@@ -59,7 +59,7 @@ def test_a_run_has_the_same_hash(tmp_path: Path, run: tuple[str, str]) -> None:
 @needs_compiled
 def test_every_module_is_compiled_that_should_be() -> None:
     names = {".".join(path.with_suffix("").parts) for path in compiled.modules()}
-    assert {"firmware_sim.axis", "hilbed.can.wire"} < names
+    assert {"firmware_sim.axis", "hilbed.can.wire", "hilbed.estimation.ekf"} < names
     found = {name for name in compiled.Compiled().files if "__mypyc" not in name}
     assert found == names
 
