@@ -1,4 +1,4 @@
-"""Compiles what a run spends its time in with mypyc into the environment of this Python; quick when it is done.
+"""Compiles what a run spends its time in with mypyc, for the Python it is called with; quick when it is done.
 
 Needs a C compiler, Python.h and the packages of the extra `compile`.
 Usage: python scripts/compile.py [--check]   (--check: only tells, by exit status 1, that it has to be done)
