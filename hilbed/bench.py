@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import resource
+import os
 import subprocess
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any
 
 from hilbed import bench_particles, compiled
+from hilbed.clock import nanos
 from hilbed.record.folder import RunFolder
-from hilbed.runner import perform, processors
+from hilbed.runner import Watch, perform, processors
 from hilbed.scenario.load import load
+from hilbed.types import Cycle, Nanos
 
 STARTS = 5
 
@@ -26,23 +29,47 @@ def bench(scenario: str) -> int:
     more the camera renders and detects in a process of its own, and another one writes the logs.
     """
     loaded = load(scenario, ["record=all"])
+    memory = Memory(nanos(loaded.scenario.duration))
     with TemporaryDirectory(prefix="hilbed-bench-") as folder:
-        outcome = perform(loaded, RunFolder(Path(folder) / "run"), separate=processors() > 1)
-    memory, largest = _peak(resource.RUSAGE_SELF), _peak(resource.RUSAGE_CHILDREN)
+        run, watch = RunFolder(Path(folder) / "run"), Watch(cycle=memory.look)
+        outcome = perform(loaded, run, watch, separate=processors() > 1)
     verdict = outcome.verdict
     if not verdict["sim_time"]:
         print(f"{loaded.name}: {verdict['reason']}", file=sys.stderr)
         return outcome.status
     print(_table(loaded.name, verdict))
     print(f"firmware, bus and EKF: {'compiled' if compiled.active() else 'from their sources'}")
-    print(f"peak memory: {memory:.0f} MB, of the largest process beside it {largest:.0f} MB")
+    print(memory.text())
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
     print(bench_particles.report())
     return outcome.status
 
 
-def _peak(who: int) -> float:
-    return resource.getrusage(who).ru_maxrss / 1024
+class Memory:
+    """The most memory that the bench and the processes beside it have held by the end of a run."""
+
+    def __init__(self, end: Nanos) -> None:
+        self._end = end
+        self._peaks: list[float] = []
+
+    def look(self, cycle: Cycle) -> None:
+        """Notes it with the last cycle."""
+        if cycle.t == self._end:
+            children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+            self._peaks = [peak for process in ("self", *children) if (peak := _peak(process))]
+
+    def text(self) -> str:
+        """Returns it as a line."""
+        each = " + ".join(f"{peak:.0f}" for peak in self._peaks)
+        return f"peak memory: {each} = {sum(self._peaks):.0f} MB (bench, processes beside it)"
+
+
+def _peak(process: str) -> float:
+    """Returns the most MB that a process has held, 0 of one that has gone."""
+    with suppress(OSError):
+        status = Path(f"/proc/{process}/status").read_text()
+        return int(status.partition("VmHWM:")[2].split()[0]) / 1024
+    return 0.0
 
 
 def _table(name: str, verdict: Mapping[str, Any]) -> str:
