@@ -19,6 +19,7 @@ from hilbed import collector
 from hilbed.aside import Aside
 from hilbed.cost import Cost
 from hilbed.sensors.camera import open_eye
+from hilbed.sensors.parcel import made_exposure, plain_findings
 from hilbed.sensors.remote import EyeLost
 from hilbed.types import HilbedError, Image
 from hilbed.vision.lifeline import end_with
@@ -50,13 +51,14 @@ def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     cost = Cost()
     eye = open_eye(spec, setting, cost)
     aside = Aside(os.getppid())
+    aside.step()
     yield None
-    for exposure in asked:
-        aside.step()
+    for plain in asked:
         render, vision = cost.render, cost.vision
-        image, *told = eye.look(exposure)()
+        image, findings, *told = eye.look(made_exposure(plain))()
         np.copyto(shared.reshape(image.shape), image)
-        yield *told, cost.render - render, cost.vision - vision
+        yield plain_findings(findings), *told, cost.render - render, cost.vision - vision
+        aside.step()  # while nobody waits for it
 
 
 def main() -> None:
