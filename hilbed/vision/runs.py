@@ -84,7 +84,6 @@ def gather(runs: Runs) -> tuple[Runs, Blobs]:
     left = offset + runs.left
     order = left.argsort(kind="stable")
     left, reach = left[order], np.maximum.accumulate((offset + runs.right)[order])
-    apart = np.ones(order.size + 1, np.bool_)
-    np.greater_equal(left[1:], reach[:-1], out=apart[1:-1])
-    edges = apart.nonzero()[0]
+    ends = (left[1:] >= reach[:-1]).nonzero()[0] + 1
+    edges = np.array([0, *ends.tolist(), order.size])
     return runs.pick(order), Blobs(edges[:-1], edges[1:] - edges[:-1])
