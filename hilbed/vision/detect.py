@@ -60,18 +60,18 @@ class ColourDetector:
 
         Where edges are soft, a rim takes a row more, which may show it in two pieces.
         """
-        row, (first, count) = runs.row, blobs
+        row, (first, size) = runs.row, blobs
         top, bottom = np.minimum.reduceat(row, first), np.maximum.reduceat(row, first)
         radius = 0.5 * np.maximum.reduceat(runs.right - runs.left, first)
         upper, lower = radius * self._steepness(runs, blobs, np.array((top, bottom)))
         highest, lowest = top + upper + blurred, bottom - lower - blurred
-        keep = (row >= highest.repeat(count)) & (row <= lowest.repeat(count))
+        keep = (row >= highest.repeat(size)) & (row <= lowest.repeat(size))
         shown = np.add.reduceat(keep, first, dtype=np.intp)
-        runs_in, rows = (shown, np.floor(lowest) - np.ceil(highest)) if blurred else (count, bottom - top)
-        whole = (runs_in <= rows + 1) & (shown >= FEWEST_ROWS)
-        kept = (keep & whole.repeat(count)).nonzero()[0]
-        count = shown[whole]
-        return runs.pick(kept), Blobs(count.cumsum() - count, count)
+        seen, rows = (shown, np.floor(lowest) - np.ceil(highest)) if blurred else (size, bottom - top)
+        whole = (seen <= rows + 1) & (shown >= FEWEST_ROWS)
+        kept = (keep & whole.repeat(size)).nonzero()[0]
+        size = shown[whole]
+        return runs.pick(kept), Blobs(size.cumsum() - size, size)
 
     def _steepness(self, runs: Runs, blobs: Blobs, rims: Indices) -> Array:
         """Returns (2, m) how steeply the camera looks at the rims in these rows."""

@@ -58,23 +58,26 @@ class Axes(NamedTuple):
 def fit(lens: Lens, runs: Runs, blobs: Blobs, edges: Edges, may_lean: bool) -> list[Fit]:
     """Returns the axis of each blob; may_lean: whether they may all lean, by a rolling shutter."""
     axes = _axes(lens, runs, blobs, edges, may_lean)
-    rows, rough = blobs.size.tolist(), axes.rough.tolist()
-    noise, part = [0.0] * len(rows), [1.0] * len(rows)
-    if edges.blurred:
-        squared = np.add.reduceat(edges.noise**2, blobs.first) / blobs.size
-        noise = squared.tolist()  # of an edge, pixels squared; the mean of two has half of it
-        part = [min(1.0, sqrt(max(r * r - n, 0.0)) / _ROUNDED) for r, n in zip(rough, noise, strict=True)]
-    rounding = _rounding(lens, runs, blobs, axes, part)
-    drawn = _INTERPOLATED**2 if lens.distorted else 0.0
-    stepped = _STEPPED**2 if axes.common and not edges.blurred else 0.0
-    off = [max(one, _FINEST) for one in rounding]
+    rough, pixel, rows = axes.rough.tolist(), axes.pixel.tolist(), blobs.size.tolist()
+    noise, part = _softness(edges, blobs, rough)
+    more = _INTERPOLATED**2 if lens.distorted else 0.0
+    more_steps = _STEPPED**2 if axes.common and not edges.blurred else 0.0
+    off = [max(_FINEST, one) for one in _rounding(lens, runs, blobs, axes, part)]
     std = [
-        angle * sqrt(o * o + drawn + stepped + 0.5 * n / count)
-        for angle, o, n, count in zip(axes.pixel.tolist(), off, noise, rows, strict=True)
+        angle * sqrt(one * one + more + more_steps + 0.5 * n / size)
+        for angle, one, n, size in zip(pixel, off, noise, rows, strict=True)
     ]
     column, row = places(lens, axes.azimuth, axes.depression, axes.row)
     label = runs.label[blobs.first].tolist()
     return [*map(Fit, axes.azimuth.tolist(), std, column.tolist(), row.tolist(), label, rough)]
+
+
+def _softness(edges: Edges, blobs: Blobs, rough: list[float]) -> tuple[list[float], list[float]]:
+    """Returns noise of an edge (pixels squared; the mean of two has half of it), part of rounding left."""
+    if not edges.blurred:
+        return [0.0] * len(rough), [1.0] * len(rough)
+    noise = (np.add.reduceat(edges.noise**2, blobs.first) / blobs.size).tolist()
+    return noise, [min(1.0, sqrt(max(r * r - n, 0.0)) / _ROUNDED) for r, n in zip(rough, noise, strict=True)]
 
 
 def _axes(lens: Lens, runs: Runs, blobs: Blobs, edges: Edges, may_lean: bool) -> Axes:
@@ -83,13 +86,13 @@ def _axes(lens: Lens, runs: Runs, blobs: Blobs, edges: Edges, may_lean: bool) ->
     The edges of a cone obey azimuth = axis ± (a + b tan(depression)). In one row, left and right edge
     differ in depression where the beacon is off the middle of the image; b takes that out.
     """
-    first, count = blobs
+    first, size = blobs
 
     def mean(x: Array) -> Array:
-        return np.asarray(np.add.reduceat(x, first, axis=-1) / count)
+        return np.asarray(np.add.reduceat(x, first, axis=-1) / size)
 
     def each(x: Array) -> Array:
-        return x.repeat(count, axis=-1)
+        return x.repeat(size, axis=-1)
 
     left, right, low, high = rays(lens, edges.columns, runs.row)
     spread = np.array((0.5 * (left - right), 0.5 * (low + high), runs.row), float)
@@ -108,7 +111,7 @@ def _axes(lens: Lens, runs: Runs, blobs: Blobs, edges: Edges, may_lean: bool) ->
     middle -= each(azimuth)
     half -= tapers * depth
     leaning, off = mean(np.array((middle * height, middle * middle + half * half)))
-    common = _common((leaning / tall).tolist(), pixel.tolist(), count.tolist()) if may_lean else 0.0
+    common = _common((leaning / tall).tolist(), pixel.tolist(), size.tolist()) if may_lean else 0.0
     if common:
         middle -= common * height
         azimuth += common * (lens.cy - row)
@@ -134,14 +137,14 @@ def _common(leaning: list[float], pixel: list[float], rows: list[int]) -> float:
 
 def _rounding(lens: Lens, runs: Runs, blobs: Blobs, axes: Axes, part: list[float]) -> list[float]:
     """Returns the error (pixels) of each blob's azimuth from rounding; part: of it that is left."""
-    first, count = blobs
+    first, size = blobs
     if lens.upright and not axes.common:
         steps = np.maximum.reduceat(runs.left, first) - np.minimum.reduceat(runs.left, first)
         return [*map(of_steps, steps.tolist(), part)]
     top, bottom = np.minimum.reduceat(axes.depth, first), np.maximum.reduceat(axes.depth, first)
     lean = leans(lens, axes.azimuth, axes.depression + top, axes.depression + bottom)
-    lean += axes.common / axes.pixel * (count - 1)
+    lean += axes.common / axes.pixel * (size - 1)
     narrows = axes.taper * (bottom - top) / axes.pixel
-    whole = count / (count - 1.0)  # half a row more at either end
+    whole = size / (size - 1.0)  # half a row more at either end
     left, right = np.abs((lean - narrows) * whole), np.abs((lean + narrows) * whole)
-    return [*map(of_crossings, left.tolist(), right.tolist(), count.tolist(), part)]
+    return [*map(of_crossings, left.tolist(), right.tolist(), size.tolist(), part)]
