@@ -29,7 +29,9 @@ class Exposure(NamedTuple):
     def at(self, t: Nanos) -> Moment:
         """Returns where things were at t, in proportion between moments and on as before beyond them."""
         moments = self.moments
-        if len(moments) == 1 or t == moments[0].t:
+        if t == moments[0].t:
+            return moments[0]
+        if len(moments) == 1:
             return moments[0]._replace(t=t)
         after = next((k for k in range(1, len(moments)) if moments[k].t >= t), len(moments) - 1)
         return moments[after] if moments[after].t == t else _on_the_way(moments[after - 1], moments[after], t)

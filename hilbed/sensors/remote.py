@@ -18,6 +18,7 @@ from hilbed import offspring
 from hilbed.cost import Cost, perf_counter
 from hilbed.sensors.exposure import Exposure
 from hilbed.sensors.eye import Glimpse, Setting, Ticket
+from hilbed.sensors.parcel import made_findings, plain_exposure
 from hilbed.types import HilbedError, Image
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class RemoteEye:
             raise RuntimeError("the frame before has not been taken yet")
         self._meet()
         start = perf_counter()
-        self._send(exposure)
+        self._send(plain_exposure(exposure))
         self._asked = True
         self.cost.vision += perf_counter() - start
         return self._take
@@ -88,7 +89,7 @@ class RemoteEye:
         self._wait()
         start = perf_counter()
         findings, trouble, said, render, vision = self._receive()
-        glimpse = Glimpse(self._image.copy(), findings, trouble, said)
+        glimpse = Glimpse(self._image.copy(), made_findings(findings), trouble, said)
         self._asked = False
         self.cost.add_beside("render", render)
         self.cost.add_beside("vision", vision)

@@ -5,13 +5,11 @@ from __future__ import annotations
 import os
 import pickle
 import signal
-import socket
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
-from io import BufferedRWPair
 from mmap import mmap
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -19,12 +17,13 @@ from hilbed import collector
 from hilbed.aside import Aside
 from hilbed.cost import Cost
 from hilbed.sensors.camera import open_eye
+from hilbed.sensors.parcel import made_exposure, plain_findings
 from hilbed.sensors.remote import EyeLost
 from hilbed.types import HilbedError, Image
 from hilbed.vision.lifeline import end_with
 
 
-def requests(line: BufferedRWPair) -> Iterator[Any]:
+def requests(line: IO[bytes]) -> Iterator[Any]:
     """Yields what the bench asks for until it has gone."""
     with suppress(EOFError, OSError):
         while True:
@@ -50,13 +49,14 @@ def frames(asked: Iterator[Any], shared: Image) -> Iterator[object]:
     cost = Cost()
     eye = open_eye(spec, setting, cost)
     aside = Aside(os.getppid())
+    aside.step()
     yield None
-    for exposure in asked:
-        aside.step()
+    for plain in asked:
         render, vision = cost.render, cost.vision
-        image, *told = eye.look(exposure)()
+        image, findings, *told = eye.look(made_exposure(plain))()
         np.copyto(shared.reshape(image.shape), image)
-        yield *told, cost.render - render, cost.vision - vision
+        yield plain_findings(findings), *told, cost.render - render, cost.vision - vision
+        aside.step()  # while nobody waits for it
 
 
 def main() -> None:
@@ -64,12 +64,16 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())
     end_with(os.getppid(), signal.SIGTERM)  # even while it waits for a foreign detector
     descriptor, memory = map(int, sys.argv[1:])
-    line = socket.socket(fileno=descriptor).makefile("rwb")
     shared = np.frombuffer(mmap(memory, 0), np.uint8)
-    with suppress(OSError), collector.paused():  # the bench has gone
-        for answer in answers(requests(line), shared):
-            pickle.dump(answer, line)
-            line.flush()
+    with (
+        suppress(OSError),  # the bench has gone
+        open(descriptor, "rb") as asked,
+        open(descriptor, "wb", closefd=False) as told,
+        collector.paused(),
+    ):
+        for answer in answers(requests(asked), shared):
+            pickle.dump(answer, told)
+            told.flush()
 
 
 if __name__ == "__main__":

@@ -8,8 +8,8 @@ the same behind the bodies of either renderer.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import compress
 from math import sqrt
+from typing import TypeAlias
 
 import cv2
 import numpy as np
@@ -17,9 +17,11 @@ import numpy as np
 from hilbed.scene import BeaconSpec, ScenerySpec
 from hilbed.types import Array, Image
 from hilbed.vision.clip import Corners, HalfSpace, clip
-from hilbed.vision.opengl import FAR, NEAR, Pinhole, axes
+from hilbed.vision.opengl import FAR, NEAR, Pinhole, Vector, axes
 from hilbed.vision.planes import COARSER, Plane, planes
 from hilbed.vision.seams import Viewpoint
+
+Turn: TypeAlias = tuple[Vector, Vector, Vector]
 
 _SMOOTH = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
 _GRAZING = 1e-3  # m: an eye that is not farther from a plane does not see it
@@ -33,39 +35,39 @@ class Backdrop:
         self._lens = lens
         sky = [round(255.0 * part) for part in spec.sky]
         self._sky = np.full((lens.height, lens.width, 3), sky, np.uint8)
-        self._planes = planes(spec, beacons)
-        self._corners = np.array([plane.corners for plane in self._planes]).reshape(-1, 4, 3)
-        self._normals = np.array([np.cross(p.right, p.up) for p in self._planes]).reshape(-1, 3)
+        self._planes = [
+            (plane, plane.corners.tolist(), np.cross(plane.right, plane.up).tolist())
+            for plane in planes(spec, beacons)
+        ]
         self._matrix = np.array([[lens.fx, 0.0, lens.cx], [0.0, lens.fy, lens.cy], [0.0, 0.0, 1.0]])
         self._frustum = _frustum(lens)
-        self._sides, self._shifts = np.split(np.array(self._frustum), [3], axis=1)
 
     def paint(self, view: Viewpoint) -> Image:
         """Returns (H, W, 3) RGB."""
         image = self._sky.copy()
-        forward, left, up = axes(view)
-        turn = np.array([[-one for one in left], [-one for one in up], forward])
-        eye = np.array([view.x, view.y, view.z])
-        for plane, square, offset in self._seen(turn, eye):
+        forward, (lx, ly, lz), (ux, uy, uz) = axes(view)
+        turn = (-lx, -ly, -lz), (-ux, -uy, -uz), forward
+        for plane, square, offset in self._seen(view, turn):
             if square and len(plane.tiles) == 1:
                 self._fill(image, square, plane.tiles[0])
             elif square:
-                self._cover(image, square, plane, offset, _frame(plane, turn, eye))
+                frame = _frame(plane, np.array(turn), np.array(view[:3]))
+                self._cover(image, square, plane, offset, frame)
         return image
 
-    def _seen(self, turn: Array, eye: Array) -> Iterator[tuple[Plane, Corners, float]]:
-        """Yields planes that look at the eye, what the frame shows of each, and how far off each is (m).
-
-        Most planes lie within most of the sides of the frustum, or beyond one of them altogether.
-        """
-        squares = (self._corners - eye) @ turn.T
-        offsets = ((eye - self._corners[:, 0]) * self._normals).sum(axis=1).tolist()
-        outside = self._sides @ squares.swapaxes(1, 2) + self._shifts < 0.0
-        gone, cut = outside.all(axis=2).any(axis=1).tolist(), outside.any(axis=2).tolist()
-        for k, offset in enumerate(offsets):
-            if offset > _GRAZING and not gone[k]:
-                spaces = list(compress(self._frustum, cut[k]))
-                yield self._planes[k], clip(squares[k].tolist(), spaces), offset
+    def _seen(self, view: Viewpoint, turn: Turn) -> Iterator[tuple[Plane, Corners, float]]:
+        """Yields planes that look at the eye, what the frame shows of each, and how far off each is (m)."""
+        ex, ey, ez = view[:3]
+        (a, b, c), (d, e, f), (g, h, i) = turn
+        for plane, corners, (nx, ny, nz) in self._planes:
+            there = [(x - ex, y - ey, z - ez) for x, y, z in corners]
+            x, y, z = there[0]
+            offset = -(x * nx + y * ny + z * nz)
+            if offset > _GRAZING:
+                square = [
+                    (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z) for x, y, z in there
+                ]
+                yield plane, clip(square, self._frustum), offset
 
     def _cover(self, image: Image, corners: Corners, plane: Plane, offset: float, frame: Array) -> None:
         """Draws a plane with a pattern in strips, each in as many pixels as can be told apart there."""

@@ -16,7 +16,7 @@ Labels = npt.NDArray[np.uint8]
 BACKGROUND, OTHER = 0, 255  # of the labels, which are masked bit by bit
 HUES = 180  # OpenCV counts hue in steps of 2°
 NEAREST = 15.0 / 2.0  # half the distance between the hues of two beacons
-_LEAST, _MOST = (0, 100, 40), (255, 255, 255)  # hue, saturation, value: below either a pixel has no colour
+_LEAST_SATURATION, _LEAST_VALUE = 100, 40  # below either a pixel has no colour
 
 
 class Palette:
@@ -26,14 +26,14 @@ class Palette:
         self.colours = tuple(dict.fromkeys(colours))
         if len(self.colours) >= OTHER:
             raise ValueError("more colours than labels")
-        self._labels = np.array([self._label(hue) for hue in range(256)], np.uint8)
+        self._labels = np.zeros((1, 256, 3), np.uint8)  # by hue; all bits where saturation, value are enough
+        self._labels[0, :, 0] = [self._label(hue) for hue in range(256)]
+        self._labels[0, _LEAST_SATURATION:, 1] = self._labels[0, _LEAST_VALUE:, 2] = 255
 
     def label(self, pixels: Image) -> Labels:
         """Returns (n,) for (1, n, 4) RGBA: BACKGROUND, a colour's label, or OTHER for any other colour."""
-        hsv = cv2.cvtColor(pixels, cv2.COLOR_RGB2HSV)
-        coloured = cv2.inRange(hsv, _LEAST, _MOST)
-        label = cv2.LUT(cv2.extractChannel(hsv, 0), self._labels)
-        return np.asarray(cv2.bitwise_and(label, coloured)[0], np.uint8)
+        hsv = cv2.LUT(cv2.cvtColor(pixels, cv2.COLOR_RGB2HSV), self._labels)[0]
+        return np.asarray(hsv[:, 0] & hsv[:, 1] & hsv[:, 2], np.uint8)
 
     def _label(self, hue: int) -> int:
         distances = [abs((hue - _hue(colour) + HUES / 2) % HUES - HUES / 2) for colour in self.colours]

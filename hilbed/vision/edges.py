@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hilbed.types import Array, Image
-from hilbed.vision.runs import Indices, Runs, bounds
+from hilbed.vision.runs import Begins, Blobs, Indices, Runs
 
 # Pixels a run that differ from their neighbour beside an edge: at least 2 where edges are soft, 4 at most; in
 # a sharp image 0, but for beacons that stand side by side, texture, shading and noise.
@@ -26,29 +26,30 @@ _WIDE = 4  # pixels: the middle of a run that wide has the beacon's colour
 
 
 class Edges(NamedTuple):
-    """Columns of both edges of each run, and their standard deviation from noise (pixels), all (n,).
+    """Columns (2, n) of left and right edge of each run, and standard deviation (n,) from noise (pixels).
 
     blurred: whether they may be found more finely than to whole pixels.
     """
 
-    left: Array
-    right: Array
+    columns: Array
     noise: Array
     blurred: bool
 
 
 def crisp(runs: Runs) -> Edges:
     """Returns edges halfway between the last pixel outside and the first one inside."""
-    left, right = (np.asarray(column + 0.5, float) for column in (runs.left, runs.right))
-    return Edges(left, right, np.zeros(runs.row.size), False)
+    columns = np.array((runs.left, runs.right), float) + 0.5
+    return Edges(columns, np.zeros(runs.row.size), False)
 
 
-def is_soft(image: Image, runs: Runs) -> bool:
+def is_soft(image: Image, runs: Runs, begins: Begins) -> bool:
     """Tells whether many edges show pixels of a colour between the background's and the beacon's.
 
     Texture, shading and noise make pixels differ, too, but leave edges as sharp as they are.
     """
     runs = Runs(*(column[:: 1 + runs.row.size // _SAMPLE] for column in runs))
+    if _changes(runs, begins, image.shape[1]) <= _UNEVEN * runs.row.size:
+        return False
     sides = _beside(runs, image.shape[1] - 1)
     pixels = image[runs.row, sides]
     red, green, blue = np.moveaxis(pixels[:, ::2] != pixels[:, 1::2], -1, 0)
@@ -57,6 +58,13 @@ def is_soft(image: Image, runs: Runs) -> bool:
     solid = runs.right - runs.left >= _SOLID
     pixels = pixels[:, :, solid] if solid.any() else pixels
     return bool(_mixed(pixels.astype(np.float32)) > _SOFT * pixels.shape[2])
+
+
+def _changes(runs: Runs, begins: Begins, width: int) -> int:
+    """Returns how many pixels beside edges differ from their neighbour, or are at a border."""
+    start = runs.row * width
+    left, right = start + runs.left, start + runs.right
+    return int(np.count_nonzero(begins[np.concatenate((left, left + 2, right, right + 2))]))
 
 
 def _beside(runs: Runs, last: int) -> Indices:
@@ -81,14 +89,14 @@ def _mixed(pixels: Array) -> int:
     return int(np.count_nonzero(mixed[:, 0] | mixed[:, 1]))
 
 
-def soft(image: Image, runs: Runs, blob: Indices) -> Edges:
+def soft(image: Image, runs: Runs, blobs: Blobs) -> Edges:
     """Returns edges where the colour has changed by half from the background's to the beacon's.
 
     A steep edge is placed by how much of four pixels it covers, which is exact for edges interpolated
     between pixels, where the line through two pixels is up to 0.09 pixel off.
-    image: (H, W, 3); blob: that each run belongs to, ascending.
+    image: (H, W, 3).
     """
-    full = np.tile(_full_colour(image, runs, blob), (2, 1))
+    full = np.tile(_full_colour(image, runs, blobs), (2, 1))
     height, width, colours = image.shape
     pixels = image.reshape(height * width, colours)
     begin, inside = np.tile(runs.row * width, 2), np.concatenate((runs.left + 1, runs.right))
@@ -100,13 +108,13 @@ def soft(image: Image, runs: Runs, blob: Indices) -> Edges:
         if np.mean(cover[:, -2] - cover[:, -1]) < _LEVEL:
             break
     beyond, noise = _crossing(cover)
-    (left, right), (low, high) = np.split(inside + outwards * beyond, 2), np.split(noise, 2)
-    return Edges(left, right, np.hypot(low, high) / np.sqrt(2.0), True)
+    columns, (low, high) = (inside + outwards * beyond).reshape(2, -1), noise.reshape(2, -1)
+    return Edges(columns, np.hypot(low, high) / np.sqrt(2.0), True)
 
 
-def _full_colour(image: Image, runs: Runs, blob: Indices) -> Array:
+def _full_colour(image: Image, runs: Runs, blobs: Blobs) -> Array:
     """Returns (n, 3) the colour in the middle of the beacon that each run belongs to."""
-    first, count = bounds(blob)
+    first, count = blobs
     width = runs.right - runs.left
     widest = np.repeat(np.maximum.reduceat(width, first), count)
     weight = (width >= np.minimum(widest, _WIDE)).astype(float)

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from hilbed.types import Array
-from hilbed.vision.edges import Edges
 from hilbed.vision.lens import Lens
 from hilbed.vision.runs import Indices
 
@@ -21,34 +20,24 @@ class Rays(NamedTuple):
     high: Array
 
 
-def rays(lens: Lens, edges: Edges, row: Indices) -> Rays:
-    """Returns which way both edges look."""
+def rays(lens: Lens, columns: Array, row: Indices) -> Rays:
+    """Returns which way both edges (columns (2, n)) of the runs in these rows look."""
     if lens.upright and not lens.distorted:
-        drop = np.asarray((row - lens.cy) / lens.fy, float)
-        left = np.asarray(np.arctan((lens.cx - edges.left) / lens.fx))
-        right = np.asarray(np.arctan((lens.cx - edges.right) / lens.fx))
-        return Rays(left, right, drop * np.cos(left), drop * np.cos(right))
-    azimuth, elevation = lens.direction(np.concatenate(edges[:2]), np.tile(row, 2).astype(float))
-    depression = -np.tan(elevation)
-    return Rays(*np.split(azimuth, 2), *np.split(depression, 2))
+        azimuth = np.arctan((lens.cx - columns) / lens.fx)
+        return Rays(*azimuth, *(np.cos(azimuth) * ((row - lens.cy) / lens.fy)))
+    azimuth, elevation = lens.direction(columns.ravel(), np.tile(row, 2).astype(float))
+    return Rays(*azimuth.reshape(2, -1), *-np.tan(elevation).reshape(2, -1))
 
 
-def steepness(lens: Lens, column: Array, row: Indices) -> Array:
+def steepness(lens: Lens, column: float | Array, row: Indices) -> Array:
     """Returns how steeply (tangent, positive) points of the image look down or up in its middle's plane.
 
-    What distortion changes in that is left out.
+    What distortion changes in that is left out, and the column does not matter to an upright lens.
     """
     if lens.upright:
         return np.asarray(np.abs((row - lens.cy) / lens.fy))
     azimuth, elevation = lens.direction(column, row.astype(float))
     return np.asarray(np.abs(np.tan(elevation) / np.cos(azimuth)))
-
-
-def pixel_angle(lens: Lens, azimuth: Array, width: Array, angle: Array) -> Array:
-    """Returns the angle (rad) of a pixel at each azimuth, where `width` pixels span `angle`."""
-    if lens.upright and not lens.distorted:
-        return np.asarray(np.cos(azimuth) ** 2 / lens.fx)
-    return np.asarray(angle / width)
 
 
 def places(lens: Lens, azimuth: Array, depression: Array, row: Array) -> tuple[Array, Array]:

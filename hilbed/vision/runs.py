@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import cv2
 import numpy as np
@@ -12,6 +12,8 @@ from hilbed.types import Image
 from hilbed.vision.colour import BACKGROUND, OTHER, Palette
 
 Indices = npt.NDArray[np.intp]
+Begins: TypeAlias = npt.NDArray[np.bool_]
+"""(H W + 1,), row by row: whether a pixel differs from the one before it; True for the first of a row."""
 
 _SPAN = 1 << 20  # more than an image has columns
 
@@ -32,52 +34,56 @@ class Runs(NamedTuple):
         return Runs(self.row[which], self.left[which], self.right[which], self.label[which])
 
 
-def find_runs(image: Image, palette: Palette) -> Runs:
-    """Returns the runs of the palette's colours in an (H, W, 3) RGB image, row by row.
+class Blobs(NamedTuple):
+    """Runs that follow each other and belong together: each blob's first run and number of runs, (m,)."""
+
+    first: Indices
+    size: Indices
+
+
+def find_runs(image: Image, palette: Palette) -> tuple[Runs, Begins]:
+    """Returns the runs of the palette's colours in an (H, W, 3) RGB image, and where its pixels differ.
 
     A stretch that the border of the image or another colour cuts off is not a run: its edge is not the edge
     of the beacon.
     """
     width = image.shape[1]
-    begin, pixel = _stretches(image)
+    begins, begin, pixel = _stretches(image)
     label = palette.label(pixel)
-    change = (label[1:] != label[:-1]).nonzero()[0]
-    outside, inside, begin = label[change], label[change + 1], begin[change + 1]
+    changes = np.empty(label.size, np.bool_)
+    changes[0] = True
+    np.not_equal(label[1:], label[:-1], out=changes[1:])
+    change = changes.nonzero()[0]
+    label, begin = label[change], begin[change]
     row = begin // width
     column = begin - row * width
     # A change at column 0 is one between two rows and opens nothing.
-    opens = (outside[:-1] == BACKGROUND) & (inside[:-1] != OTHER) & (column[:-1] > 0)
-    k = (opens & (inside[1:] == BACKGROUND) & (row[1:] == row[:-1])).nonzero()[0]
-    return Runs(row[k], column[k] - 1, column[k + 1] - 1, inside[k].astype(np.intp))
+    ground, coloured = label == BACKGROUND, (label != OTHER) & (column > 0)
+    k = (ground[:-2] & coloured[1:-1] & ground[2:] & (row[1:-1] == row[2:])).nonzero()[0] + 1
+    return Runs(row[k], column[k] - 1, column[k + 1] - 1, label[k].astype(np.intp)), begins
 
 
-def _stretches(image: Image) -> tuple[Indices, Image]:
-    """Returns where each stretch of equal pixels begins, (n,) counted row by row, and its pixel (1, n, 4).
+def _stretches(image: Image) -> tuple[Begins, Indices, Image]:
+    """Returns where pixels differ, where stretches of equal pixels begin, (n,), and their pixels (1, n, 4).
 
     Each row begins a stretch. Only one pixel of each needs to be judged by its colour.
     """
     pixels = cv2.cvtColor(image, cv2.COLOR_RGB2RGBA).view(np.uint32).ravel()
-    begins = np.empty(pixels.size, np.bool_)
-    np.not_equal(pixels[1:], pixels[:-1], out=begins[1:])
+    begins = np.empty(pixels.size + 1, np.bool_)
+    np.not_equal(pixels[1:], pixels[:-1], out=begins[1:-1])
     begins[:: image.shape[1]] = True
-    if np.count_nonzero(begins) > pixels.size // 2:  # of a noisy image each pixel may as well be judged
-        return np.arange(pixels.size), pixels.view(np.uint8).reshape(1, -1, 4)
-    begin = begins.nonzero()[0]
-    return begin, pixels[begin].view(np.uint8).reshape(1, -1, 4)
+    begin = begins[:-1].nonzero()[0]
+    if begin.size > pixels.size // 2:  # of a noisy image each pixel may as well be judged
+        return begins, np.arange(pixels.size), pixels.view(np.uint8).reshape(1, -1, 4)
+    return begins, begin, pixels[begin].view(np.uint8).reshape(1, -1, 4)
 
 
-def gather(runs: Runs) -> tuple[Runs, Indices]:
-    """Returns the runs ordered by blob and the blob (n,) of each: one colour, columns that overlap."""
+def gather(runs: Runs) -> tuple[Runs, Blobs]:
+    """Returns the runs (n ≥ 1) ordered by blob, and the blobs: one colour, columns that overlap."""
     offset = runs.label * _SPAN
     left = offset + runs.left
     order = left.argsort(kind="stable")
     left, reach = left[order], np.maximum.accumulate((offset + runs.right)[order])
-    blob = np.zeros(order.size, np.intp)
-    np.cumsum(left[1:] >= reach[:-1], out=blob[1:])
-    return runs.pick(order), blob
-
-
-def bounds(blob: Indices) -> tuple[Indices, Indices]:
-    """Returns each blob's first run and number of runs, both (m,), from the blob (n,) of each run, n ≥ 1."""
-    edges = np.concatenate(([0], (blob[1:] != blob[:-1]).nonzero()[0] + 1, [blob.size]))
-    return edges[:-1], edges[1:] - edges[:-1]
+    ends = (left[1:] >= reach[:-1]).nonzero()[0] + 1
+    edges = np.array([0, *ends.tolist(), order.size])
+    return runs.pick(order), Blobs(edges[:-1], edges[1:] - edges[:-1])

@@ -19,7 +19,7 @@ from hilbed.cost import Cost
 from hilbed.effects import Effects
 from hilbed.rng import stream
 from hilbed.sensors.camera import Camera, CameraSpec, open_eye
-from hilbed.sensors.exposure import still
+from hilbed.sensors.exposure import Exposure, still
 from hilbed.sensors.eye import Setting
 from hilbed.sensors.remote import EyeLost, RemoteEye
 from hilbed.types import Nanos, Pose, Reading, ScenarioError, Snapshot, Truth
@@ -193,8 +193,8 @@ def test_a_child_that_hangs_is_an_error_and_ended(met: bool) -> None:
 
 def test_what_goes_wrong_in_the_child_is_told() -> None:
     with eye() as remote:
-        ticket = remote.look("nowhere")  # type: ignore[arg-type]
-        with pytest.raises(EyeLost, match="AttributeError"):
+        ticket = remote.look(Exposure(0, ()))
+        with pytest.raises(EyeLost, match="IndexError"):
             ticket()
         assert not alive(remote.pid)
 
@@ -235,7 +235,7 @@ import sys
 from hilbed.cost import Cost
 from hilbed.sensors.camera import CameraSpec, open_eye
 from hilbed.scene import BeaconSpec
-from hilbed.sensors.exposure import still
+from hilbed.sensors.exposure import Exposure, still
 from hilbed.sensors.eye import Setting
 from hilbed.types import Pose
 eye = open_eye(CameraSpec(), Setting((BeaconSpec(at=(4.0, 0.0)),)), Cost(), separate=True)
