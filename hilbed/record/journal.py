@@ -20,9 +20,9 @@ HELPING: Nanos = SECOND // 2
 class Journal:
     """The recorder of a run in front of any number of sinks.
 
-    Cycles and what witnesses have noted are kept for `helping` (half a second) and then handed on at once:
-    in big helpings, while the caches are warm, the work takes half as long. Cycles are values, so nobody may
-    write to their arrays afterwards.
+    Cycles and what witnesses have noted are kept for `helping` (half a second, without readings twice as
+    long) and then handed on at once: in big helpings, while the caches are warm, the work takes half as
+    long. Cycles are values, so nobody may write to their arrays afterwards.
     """
 
     def __init__(
@@ -53,15 +53,24 @@ class Journal:
             self._ticks.append(rows)
 
     def record(self, cycle: Cycle) -> None:
-        """Keeps a cycle and, twice a second, hands on all that was kept and noted.
+        """Keeps a cycle and, once or twice a second, hands on all that was kept and noted.
 
         Raises RecordError when a log cannot be written; that log is closed, the others go on.
         """
         start = perf_counter()
         self._cycles.append(cycle)
-        if cycle.t >= self._cycles[0].t + self._helping:
+        if self._due(cycle):
             self._hand_on()
         self._cost.record += perf_counter() - start
+
+    def _due(self, cycle: Cycle) -> bool:
+        """Tells whether it is time to hand on, rather with readings than without.
+
+        A camera's process that has just answered has nothing to do, so that of the logs is not in its way on
+        the processor that both may have to share.
+        """
+        kept = cycle.t - self._cycles[0].t
+        return kept >= (self._helping if cycle.readings else 2 * self._helping)
 
     def close(self) -> None:
         """Hands on what is left, also of a run that was aborted, and closes every sink; not part of the cost.

@@ -6,6 +6,8 @@ import fcntl
 import json
 import os
 import pickle
+from collections import deque
+from collections.abc import Sequence
 from contextlib import suppress
 from subprocess import PIPE, Popen
 from typing import IO
@@ -19,8 +21,9 @@ from hilbed.record.parcel import Piece, packed
 from hilbed.record.row import Batch
 
 CHILD = "hilbed.record.remote_child"
-_MOST = 20  # batches that are kept until the other process has started
-_PIPE = 1 << 20  # bytes, the most that anybody may ask for: a batch or two, after which the bench waits
+_AT_ONCE = 1  # batches under way: more than one would not fit into the pipe, and the bench would wait
+_MOST = 20  # batches that are kept for a process that is behind; then the bench waits for it
+_PIPE = 1 << 20  # bytes, the most that anybody may ask for
 
 
 class RemoteLogs:
@@ -39,10 +42,10 @@ class RemoteLogs:
             raise RecordError(f"the process for the logs cannot be started: {error.strerror}") from error
         self._orders, self._answers = _pipes(self._process)
         self._finalize = finalize(self, _end, self._process)
-        self._waiting: list[Piece] = []
-        self._held = 0
+        self._waiting: deque[Sequence[Piece]] = deque()
+        self._under_way = 1  # what it has not answered yet: first of all, that it has started
         self._told = b""
-        self._ready = self._closed = False
+        self._closed = False
         with suppress(OSError):  # it takes smaller bites then
             fcntl.fcntl(self._orders, fcntl.F_SETPIPE_SZ, _PIPE)
         os.set_blocking(self._answers.fileno(), False)
@@ -58,13 +61,12 @@ class RemoteLogs:
     def take(self, batch: Batch) -> None:
         """Hands a batch over; raises RecordError if one before it could not be written."""
         self._heed(self._answers.read())
-        self._waiting += packed(batch)
-        self._held += 1
-        if self._ready or self._held > _MOST:
-            try:
-                self._send()
-            except BrokenPipeError:
-                self.close()
+        self._waiting.append(packed(batch))
+        try:
+            while self._waiting and (self._under_way < _AT_ONCE or len(self._waiting) > _MOST):
+                self._send(self._waiting.popleft())
+        except BrokenPipeError:
+            self.close()
 
     def close(self) -> None:
         """Waits until everything is written; raises RecordError if it is not."""
@@ -72,7 +74,8 @@ class RemoteLogs:
             return
         self._closed = True
         with suppress(BrokenPipeError):
-            self._send()
+            while self._waiting:
+                self._send(self._waiting.popleft())
         with suppress(BrokenPipeError):
             self._orders.close()
         os.set_blocking(self._answers.fileno(), True)
@@ -83,20 +86,19 @@ class RemoteLogs:
         if status:
             raise RecordError(f"the process for the logs has ended with {status}")
 
-    def _send(self) -> None:
-        """Writes what waits; takes as long as the other process takes to read it."""
-        for piece in self._waiting:
+    def _send(self, pieces: Sequence[Piece]) -> None:
+        """Writes a batch; waits where there is no room for it until the other process has read on."""
+        for piece in pieces:
             self._orders.write(piece)
         self._orders.flush()
-        self._waiting.clear()
-        self._held = 0
+        self._under_way += 1
 
     def _heed(self, answers: bytes | None) -> None:
         """Takes the time that batches took, and raises RecordError if one of them could not be written."""
         *lines, self._told = (self._told + (answers or b"")).split(b"\n")
         troubles = []
         for line in lines:
-            self._ready = True
+            self._under_way -= 1
             spent, trouble = json.loads(line)
             self._cost.add_beside("record", spent)
             troubles += [trouble] if trouble else []

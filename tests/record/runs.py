@@ -36,12 +36,21 @@ class Line:
 
 
 def cycle(k: int, *, innovations: tuple[Innovation, ...] = (), late: int = 0) -> Cycle:
-    """Cycle k of a robot that drives along y = 0.1 k at 1 m/s; its counts are `late` ns old."""
+    """Cycle k of a robot that drives along y = 0.1 k at 1 m/s; its counts are `late` ns old.
+
+    Every tenth one has heard of a beacon.
+    """
     t = k * PERIOD
     drives = {name: DriveSignals(5.0, 4.9 + k, 0.5 * k) for name in ("left", "right")}
     odometry = Odometry(t - late, 0.01 if k else -late * 1e-9, 0.0, 1.0, 0.0, drives)
     estimate = Estimate(t, np.array([0.01 * k, 0.2, 0.3]), np.diag([1.0, 4.0, 9.0]) + 0.1, innovations)
-    return Cycle(t, Truth(t, Pose(0.01 * k, 0.1 * k, 0.0)), odometry, [], estimate, Command(0.5, -0.1))
+    readings = [azimuth(t - 30_000_000)] if k % 10 == 0 else []
+    truth = Truth(t, Pose(0.01 * k, 0.1 * k, 0.0))
+    return Cycle(t, truth, odometry, readings, estimate, Command(0.5, -0.1))
+
+
+def azimuth(t: int) -> Reading:
+    return Reading("azimuth", t, t + 30_000_000, (0.5,), (0.01,))
 
 
 def ticks(count: int, first: int = 0) -> dict[str, np.ndarray]:
@@ -73,7 +82,7 @@ def play(sinks: list[Sink], cycles: int = 301, boot: int = 3, close: bool = True
         innovations: tuple[Innovation, ...] = ()
         if k % 10 == 0:
             notes.snapshot(Snapshot(t, image(k), 0.1, (3.5, 20.25), (0, None)))
-            notes.reading(Reading("azimuth", t, t + 30_000_000, (0.5,), (0.01,)), 0, (0.49,))
+            notes.reading(azimuth(t), 0, (0.49,))
             innovations = (Innovation(t, 1.5, 1, True),)
         journal.record(cycle(k, innovations=innovations, late=5_000_000))
         if k % 100 == 99:

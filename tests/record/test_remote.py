@@ -138,10 +138,15 @@ from hilbed.record.logs import Plan
 from hilbed.record.remote import RemoteLogs
 from tests.record.runs import play
 folder = Path(sys.argv[1])
-logs = RemoteLogs(Plan(folder, BOOT, SETTING, True), Cost())
+
+class Slowly(RemoteLogs):
+    def take(self, batch):
+        super().take(batch)
+        time.sleep(0.5)
+
+logs = Slowly(Plan(folder, BOOT, SETTING, True), Cost())
 while not (folder / "can.log").exists():
     time.sleep(0.01)
-time.sleep(0.2)
 play([logs], cycles=251, close=False)
 os.kill(os.getpid(), signal.SIGKILL)
 """
@@ -160,4 +165,4 @@ def test_when_the_bench_is_killed_the_logs_are_ended_properly(tmp_path: Path) ->
     assert until(whole)
     with log.open("rb") as stream:
         cycles = [message.log_time for _, _, message in make_reader(stream).iter_messages(["/cycle"])]
-    assert cycles[-1] - BOOT >= 2_000_000_000, "all but the last half second"
+    assert cycles[-1] - BOOT >= 1_500_000_000, "all but the last second"
