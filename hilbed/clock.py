@@ -6,6 +6,8 @@ from hilbed.types import Nanos
 
 SECOND: Nanos = 1_000_000_000
 MILLISECOND: Nanos = 1_000_000
+NEVER: Nanos = 1 << 62
+"""Later than anything."""
 
 
 def nanos(seconds: float) -> Nanos:

@@ -10,10 +10,10 @@ from hilbed.can.arbitration import arbitration
 from hilbed.can.frame_length import frame_bits
 from hilbed.can.port import Port, Queued
 from hilbed.can.trouble import Tamper
+from hilbed.clock import NEVER
 from hilbed.types import Frame, Nanos
 
 LONG_AGO: Nanos = -(1 << 62)
-NEVER: Nanos = 1 << 62
 _MANY = 1 << 16  # identifiers whose senders are remembered
 
 

@@ -13,9 +13,8 @@ from heapq import heappop, heappush
 
 from hilbed.can.contests import Contests, Flight, unnoticed
 from hilbed.can.frame_length import INTERFRAME_BITS
-from hilbed.can.queues import NEVER
 from hilbed.can.statistics import Statistics
-from hilbed.clock import SECOND
+from hilbed.clock import NEVER, SECOND
 from hilbed.types import NO_ERROR, BusError, Nanos, Transfer
 
 _EXTENDED = 1 << 29  # stands for every extended identifier where it is looked up who hears

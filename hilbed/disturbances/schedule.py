@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from hilbed.clock import nanos
+from hilbed.clock import NEVER, nanos
 from hilbed.effects import Effects, Surroundings
 from hilbed.spec import NonNegative, Positive, Spec
 from hilbed.types import Nanos, Rng
@@ -13,7 +13,6 @@ from hilbed.types import Nanos, Rng
 Disturbance: TypeAlias = Callable[[Nanos, Surroundings, Effects], Nanos]
 """Writes what it does at a time since its own start; returns for how long (ns) that stays the same."""
 
-NEVER: Nanos = 2**62
 STEADY: Nanos = NEVER
 """Holds as long as the disturbance is active."""
 

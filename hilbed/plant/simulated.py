@@ -8,6 +8,7 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
+from hilbed.clock import NEVER
 from hilbed.cost import Cost, perf_counter
 from hilbed.effects import Effects
 from hilbed.plant import pins
@@ -97,6 +98,7 @@ class SimulatedPlant:
         self._tick = tick
         self._cost = cost
         self._now: Nanos = 0
+        self._due: Nanos = 0  # when the next sensor takes a sample
         self._drawn = 0.0  # A out of the supply, over the last tick
         self._log = array("d")
         self._steering = next((k for k, axis in enumerate(self._axes) if axis.name == STEERING), None)
@@ -136,19 +138,23 @@ class SimulatedPlant:
         self._log.extend((*self._world.speeds, *nothing, *nothing, *loads, *nothing, *nothing, *nothing))
         if self._steering is not None:
             self._angles.append(self._world.angles[self._steering])
-        for sensor in self._sensors:
-            if sensor.due <= 0:
-                sensor.sample(self.truth())
+        self._sample(0)
 
     def advance(self, start: Nanos, end: Nanos) -> None:
         """Moves everything from `start` to `end`; Diverged if the world does not stand that."""
         for t in range(start, end, self._tick):
             self._step(t)
             self._now = now = t + self._tick
-            for sensor in self._sensors:
-                if sensor.due <= now:
-                    self._schedule.apply(now, self._world)  # a frame sees what begins with it
-                    sensor.sample(self.truth())
+            if now >= self._due:
+                self._schedule.apply(now, self._world)  # a frame sees what begins with it
+                self._sample(now)
+
+    def _sample(self, now: Nanos) -> None:
+        """Has the sensors that are due take a sample, and finds out when the next one is."""
+        for sensor in self._sensors:
+            if sensor.due <= now:
+                sensor.sample(self.truth())
+        self._due = min((sensor.due for sensor in self._sensors), default=NEVER)
 
     def _step(self, t: Nanos) -> None:
         cost, world, schedule = self._cost, self._world, self._schedule

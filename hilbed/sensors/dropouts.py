@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from hilbed.clock import nanos
+from hilbed.clock import NEVER, nanos
 from hilbed.types import Nanos, Rng
-
-NEVER: Nanos = 2**62
 
 
 class Dropouts:
