@@ -38,7 +38,7 @@ def bench(scenario: str) -> int:
         print(f"{loaded.name}: {verdict['reason']}", file=sys.stderr)
         return outcome.status
     print(_table(loaded.name, verdict))
-    print(f"firmware, bus and EKF: {'compiled' if compiled.active() else 'from their sources'}")
+    print(f"firmware, bus, plant and EKF: {'compiled' if compiled.active() else 'from their sources'}")
     print(memory.text())
     print(f"start-up of hilbed --help: {1e3 * help_time():.0f} ms (best of {STARTS})")
     print(bench_particles.report())

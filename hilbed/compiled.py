@@ -1,6 +1,6 @@
 """What a run spends its time in as machine code, where it lies ready and was made from the present sources.
 
-Compiled, firmware, wire, the controller's end of it and the EKF do the same to the bit in less time.
+Compiled, firmware, bus, plant and EKF do the same to the bit in less time.
 `scripts/compile.py` makes them; without it, or after a change of the sources, the sources themselves run: so
 they do in tests and debuggers, too, which do not ask.
 """
@@ -25,6 +25,7 @@ PARTS = {
         "arbitration", "axis", "base", "contests", "ears", "frame_length", "nmt", "port", "position_axis",
         "queues", "set_point", "station", "stations", "wire",
     ),
+    "plant": ("simulated", "pins"),
     "estimation": ("association", "dead_reckoning", "ekf", "measurement", "motion", "timeline"),
 }  # fmt: skip
 """The modules of hilbed's packages that are compiled; of the firmware, nearly all are."""

@@ -25,6 +25,20 @@ extensions = mypycify([*options, *sys.argv[1:]], opt_level="3")
 setup(name="compiled", packages=[], ext_modules=extensions, script_args=["-q", "build_ext", "--inplace"])
 """
 
+# Whatever does not load is found out here, not by a run.
+TRIAL = """
+import sys
+from importlib import import_module
+from pathlib import Path
+from hilbed import compiled
+
+compiled.place = lambda: Path(sys.argv[1])
+compiled.prefer()
+for path in compiled.modules():
+    import_module(".".join(path.with_suffix("").parts))
+assert compiled.active()
+"""
+
 # A fused multiply-add would round differently from the interpreter.
 FLAGS = "-ffp-contract=off"
 
@@ -45,6 +59,7 @@ def build(folder: Path) -> None:
             target = made / library.relative_to(workshop)
             target.parent.mkdir(parents=True, exist_ok=True)
             library.rename(target)
+        subprocess.run([sys.executable, "-c", TRIAL, str(made)], check=True)
         made.rename(folder)
 
 

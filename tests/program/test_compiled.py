@@ -1,4 +1,4 @@
-"""Compiled firmware and wire: found only where they fit, and the same to the bit."""
+"""Compiled parts: found only where they fit, and the same to the bit."""
 
 from __future__ import annotations
 
