@@ -119,3 +119,18 @@ def _remove(path: Path) -> None:
         shutil.rmtree(path)
     else:
         path.unlink(missing_ok=True)
+
+
+def check_folder(path: Path) -> None:
+    """Raises ScenarioError where a folder cannot be made or written to, before there is work to be lost.
+
+    What is tried out for it is taken back.
+    """
+    try:
+        _check_writable(path)
+        missing = [place for place in (path, *path.absolute().parents) if not place.exists()]
+        path.mkdir(parents=True, exist_ok=True)
+        for place in missing:
+            place.rmdir()
+    except OSError as error:
+        raise ScenarioError(f"{path}: {error.strerror}; give another folder with --out") from error

@@ -16,7 +16,7 @@ import cv2
 
 from hilbed import yaml12
 from hilbed.record.disk import RecordError
-from hilbed.record.folder import write_whole
+from hilbed.record.folder import check_folder, write_whole
 from hilbed.scenario.load import Loaded, resolved
 from hilbed.scenario.own_files import pack
 from hilbed.types import Image, ScenarioError
@@ -106,8 +106,9 @@ def _admit(plan: Plan, folder: Path, force: bool) -> None:
 
     With force the old dataset goes; what is not a dataset is never removed.
     """
+    check_folder(folder)
     try:
-        if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+        if not folder.exists() or not any(folder.iterdir()):
             return
         if not (folder / DATASET).is_file():
             raise ScenarioError(f"{folder} holds no dataset, so nothing is written there; give another --out")

@@ -8,14 +8,18 @@ from pathlib import Path
 from typing import Any
 
 from hilbed.record.disk import RecordError
-from hilbed.record.folder import write_whole
+from hilbed.record.folder import check_folder, write_whole
 from hilbed.types import ScenarioError
 
 
 def admit(folder: Path, numbers: str, force: bool) -> None:
-    """Raises ScenarioError where a folder holds what must not be overwritten; numbers: name of its JSON."""
+    """Raises ScenarioError where a folder cannot be written, or holds what must not be overwritten.
+
+    numbers: name of its JSON.
+    """
+    check_folder(folder)
     try:
-        if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+        if not folder.exists() or not any(folder.iterdir()):
             return
     except OSError as error:
         raise ScenarioError(f"{folder}: {error.strerror}; give another folder with --out") from error
