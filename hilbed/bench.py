@@ -55,13 +55,19 @@ class Memory:
     def look(self, cycle: Cycle) -> None:
         """Notes it with the last cycle."""
         if cycle.t == self._end:
-            children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
-            self._peaks = [peak for process in ("self", *children) if (peak := _peak(process))]
+            self._peaks = [peak for process in ("self", *_children()) if (peak := _peak(process))]
 
     def text(self) -> str:
         """Returns it as a line."""
         each = " + ".join(f"{peak:.0f}" for peak in self._peaks)
         return f"peak memory: {each} = {sum(self._peaks):.0f} MB (bench, processes beside it)"
+
+
+def _children() -> list[str]:
+    """Returns the numbers of this process's children, none where the system does not tell them."""
+    with suppress(OSError):
+        return Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+    return []
 
 
 def _peak(process: str) -> float:

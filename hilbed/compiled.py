@@ -11,7 +11,6 @@ import os
 import sys
 from collections.abc import Sequence
 from functools import cached_property
-from hashlib import sha256
 from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec
 from importlib.util import spec_from_file_location
 from pathlib import Path
@@ -32,7 +31,8 @@ PARTS = {
 
 # What surrounds the firmware waits for its bus, or only writes its EDS file: nothing is won there.
 _LEFT_OUT = ("__init__.py", "__main__.py", "process.py", "eds.py")
-_USED = ("compiled", "types", "ports", "clock", "angles", "chords")
+# What compiled modules use of the floors below: its types are built into them.
+_USED = ("compiled", "types", "ports", "clock", "cost", "effects", "angles", "chords")
 _PREFIXES = ("firmware_sim.", *(f"hilbed.{part}." for part in PARTS))
 _OFF = "HILBED_COMPILED"
 """Set to `no`, this variable has the sources run."""
@@ -45,12 +45,19 @@ def modules() -> list[Path]:
     return sorted(path.relative_to(ROOT) for path in (*firmware, *parts))
 
 
+def sources() -> list[Path]:
+    """Returns all sources that what is compiled depends on: where one changes, it is of no use any more."""
+    used = [ROOT / "hilbed" / f"{name}.py" for name in _USED]
+    parts = [path for part in PARTS for path in ROOT.glob(f"hilbed/{part}/**/*.py")]
+    return sorted((*ROOT.glob("firmware_sim/**/*.py"), *parts, *used))
+
+
 def place() -> Path:
     """Returns the folder for what is compiled from the present sources for this Python."""
+    from hashlib import sha256  # not for `hilbed --help`
+
     digest = sha256(sys.version.encode())
-    used = [ROOT / "hilbed" / f"{name}.py" for name in _USED]
-    parts = [path for part in PARTS for path in ROOT.glob(f"hilbed/{part}/*.py")]
-    for path in sorted((*ROOT.glob("firmware_sim/**/*.py"), *parts, *used)):
+    for path in sources():
         digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
     return Path(sys.prefix) / "hilbed-compiled" / digest.hexdigest()[:16]
 

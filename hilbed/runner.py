@@ -163,7 +163,7 @@ def _pacer(scenario: Scenario, cost: Cost) -> Pacer | None:
 def _parts(bench: Bench, scenario: Scenario, pacer: Pacer | None) -> dict[str, Any]:
     """Returns what verdict.json says of counters, detectors, a run in real time, a bus that others are on."""
     counted = {"estimator": counts_of(bench.rig.estimator), "controller": counts_of(bench.rig.controller)}
-    sensors = dict(zip(scenario.sensors, bench.rig.sensors, strict=False))  # a recorded robot brings its own
+    sensors = _sensors(bench, scenario)
     counted |= {
         f"sensors.{name}": counts for name, sensor in sensors.items() if (counts := counts_of(sensor))
     }
@@ -180,6 +180,11 @@ def _parts(bench: Bench, scenario: Scenario, pacer: Pacer | None) -> dict[str, A
     return parts
 
 
+def _sensors(bench: Bench, scenario: Scenario) -> dict[str, Sensor]:
+    """Returns the scenario's sensors by name; those that a recorded robot brings have none."""
+    return dict(zip(scenario.sensors, bench.rig.sensors, strict=False))
+
+
 def _foreign(sensors: Mapping[str, Sensor]) -> dict[str, Troubles]:
     """Returns what foreign detectors did wrong, by the camera's name."""
     return {
@@ -191,10 +196,9 @@ def _foreign(sensors: Mapping[str, Sensor]) -> dict[str, Troubles]:
 
 def _heard(bench: Bench, scenario: Scenario) -> dict[str, bytes]:
     """Returns what foreign detectors have printed, by the file that it goes to."""
-    sensors = dict(zip(scenario.sensors, bench.rig.sensors, strict=False))
     return {
         f"{DETECTORS}/{quote(name, safe='')}.log": troubles.heard.encode()
-        for name, troubles in _foreign(sensors).items()
+        for name, troubles in _foreign(_sensors(bench, scenario)).items()
         if troubles.heard
     }
 

@@ -8,6 +8,9 @@ from hilbed import compiled
 
 
 def prepare() -> None:
-    """Leaves Ctrl-C, which comes to every process of a terminal, to the one that leads the pool."""
+    """Leaves Ctrl-C to the process that leads the pool, and uses what is compiled.
+
+    Ctrl-C comes to every process of a terminal.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     compiled.prefer()

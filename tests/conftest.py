@@ -12,6 +12,7 @@ from hypothesis import settings
 from hilbed import compiled
 
 if os.environ.get("HILBED_COMPILED") == "yes":
+    assert compiled.place().is_dir(), "nothing is compiled from the present sources: scripts/setup"
     compiled.prefer()
 
 settings.register_profile("bench", deadline=None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import shutil
@@ -77,6 +78,20 @@ def test_after_a_change_of_the_sources_they_run_themselves(
         source.write("# changed\n")
     assert compiled.place() != before
     assert compiled.Compiled().find_spec("firmware_sim.ramp") is None
+
+
+def test_all_that_compiled_modules_import_of_hilbed_counts() -> None:
+    counted = {path.relative_to(compiled.ROOT) for path in compiled.sources()}
+    for path in compiled.modules():
+        for node in ast.walk(ast.parse((compiled.ROOT / path).read_text())):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(
+                ("hilbed.", "firmware_sim")
+            ):
+                places = [Path(*str(node.module).split("."))]
+                places += [places[0] / alias.name for alias in node.names]
+                found = [place for place in (one.with_suffix(".py") for one in places) if place in counted]
+                found += [one for one in places if one / "__init__.py" in counted]
+                assert found, (path, node.module)
 
 
 def test_nothing_else_is_looked_for() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Sequence
 from math import atan2
 from pathlib import Path
 from typing import Any
@@ -11,13 +12,14 @@ import numpy as np
 import pytest
 
 from hilbed.cost import Cost
-from hilbed.scene import ScenerySpec
+from hilbed.scene import BeaconSpec, ScenerySpec
 from hilbed.sensors.camera import CameraSpec
 from hilbed.sensors.exposure import Exposure, Moment, still
 from hilbed.sensors.eye import Setting
 from hilbed.sensors.imager import open_imager
-from hilbed.types import Pose
+from hilbed.types import Pose, Rng
 from hilbed.vision.detect import ColourDetector
+from hilbed.vision.seams import Detection
 from tests.vision.scenes import COLOURS, beacon
 
 DISTORTION: dict[str, Any] = {"k1": -0.1, "k2": 0.01}
@@ -28,6 +30,23 @@ def motion(rate: float, span: float, yaw: float = 0.0) -> Exposure:
     half = round(1e9 * span / 2)
     moments = [Moment(k * half, Pose(0.0, 0.0, yaw + k * rate * span / 2), 0.0) for k in (-1, 0, 1)]
     return Exposure(0, tuple(moments))
+
+
+def row_of_beacons(rng: Rng, farthest: float, count: int = 6) -> tuple[BeaconSpec, ...]:
+    """Returns beacons of different colours from right to left, 1 to `farthest` m away."""
+    azimuths = (np.linspace(-0.6, 0.6, 6) + rng.uniform(-0.03, 0.03, 6))[:count]
+    places = zip(azimuths.tolist(), rng.uniform(1.0, farthest, count).tolist(), COLOURS, strict=False)
+    return tuple(beacon(a, d, c) for a, d, c in places)
+
+
+def judged(
+    found: Sequence[Detection], exposure: Exposure, beacons: Sequence[BeaconSpec]
+) -> Iterator[tuple[float, float]]:
+    """Yields the error of each azimuth (rad), seen from the origin, and the deviation that it states."""
+    for one in found:
+        assert one.beacon is not None
+        bx, by = beacons[one.beacon].at
+        yield one.azimuth + exposure.at(0).pose.yaw - atan2(by, bx), one.std
 
 
 def test_motion_smears_edges_evenly_and_leaves_the_azimuth() -> None:
@@ -88,19 +107,15 @@ def test_from_1_to_8_m_all_beacons_are_found_and_their_stated_deviation_is_right
     spec, rng = CameraSpec.model_validate(block), np.random.default_rng(8)
     errors, normalised, expected = [], [], 0
     for scene in range(8):
-        azimuths = np.linspace(-0.6, 0.6, 6) + rng.uniform(-0.03, 0.03, 6)
-        places = zip(azimuths.tolist(), rng.uniform(1.0, 8.0, 6).tolist(), COLOURS, strict=True)
-        beacons = tuple(beacon(a, d, c) for a, d, c in places)
+        beacons = row_of_beacons(rng, 8.0)
         imager = open_imager(spec, Setting(beacons, seed=scene), Cost())
         detector = ColourDetector(spec.lens, beacons)
         for frame in range(8):
             exposure = motion(0.7 * (-1) ** frame, 0.004, float(rng.uniform(-0.05, 0.05)))
             expected += 6
-            for found in detector.detect(imager.shoot(exposure)):
-                assert found.beacon is not None
-                bx, by = beacons[found.beacon].at
-                errors.append(found.azimuth + exposure.at(0).pose.yaw - atan2(by, bx))
-                normalised.append(errors[-1] / found.std)
+            for error, std in judged(detector.detect(imager.shoot(exposure)), exposure, beacons):
+                errors.append(error)
+                normalised.append(error / std)
         imager.close()
     assert len(errors) == expected
     assert np.abs(errors).max() < 5e-4  # nothing that is no beacon
@@ -112,9 +127,7 @@ def test_a_finer_camera_is_as_much_more_exact() -> None:
     spec, rng = CameraSpec(width=2560, height=32), np.random.default_rng(9)
     errors = []
     for _ in range(6):
-        azimuths = np.linspace(-0.6, 0.6, 6) + rng.uniform(-0.03, 0.03, 6)
-        places = zip(azimuths.tolist(), rng.uniform(1.0, 8.0, 6).tolist(), COLOURS, strict=True)
-        beacons = tuple(beacon(a, d, c) for a, d, c in places)
+        beacons = row_of_beacons(rng, 8.0)
         imager, detector = open_imager(spec, Setting(beacons), Cost()), ColourDetector(spec.lens, beacons)
         for _ in range(4):
             yaw = float(rng.uniform(-0.05, 0.05))
@@ -150,18 +163,14 @@ def test_a_rolling_shutter_costs_no_beacon_and_no_azimuth(count: int, rate: floa
     spec, rng = CameraSpec(readout=0.005), np.random.default_rng(6)
     errors, normalised, expected = [], [], 0
     for _ in range(12 if count == 1 else 3):
-        azimuths = (np.linspace(-0.6, 0.6, 6) + rng.uniform(-0.03, 0.03, 6))[:count]
-        places = zip(azimuths.tolist(), rng.uniform(1.0, 6.0, count).tolist(), COLOURS, strict=False)
-        beacons = tuple(beacon(a, d, c) for a, d, c in places)
+        beacons = row_of_beacons(rng, 6.0, count)
         imager, detector = open_imager(spec, Setting(beacons), Cost()), ColourDetector(spec.lens, beacons)
         for frame in range(6):
             exposure = motion(rate * (-1) ** frame, 0.005, float(rng.uniform(-0.05, 0.05)))
             expected += count
-            for found in detector.detect(imager.shoot(exposure)):
-                assert found.beacon is not None
-                bx, by = beacons[found.beacon].at
-                errors.append(found.azimuth + exposure.at(0).pose.yaw - atan2(by, bx))
-                normalised.append(errors[-1] / found.std)
+            for error, std in judged(detector.detect(imager.shoot(exposure)), exposure, beacons):
+                errors.append(error)
+                normalised.append(error / std)
         imager.close()
     assert len(errors) == expected
     assert np.degrees(np.std(errors)) <= 9e-3
@@ -182,9 +191,7 @@ def test_textures_and_light_from_one_side_do_not_move_azimuths(block: dict[str, 
     """Taken for blur, texture and shading move them by 0.04 to 0.14 pixel."""
     spec, rng, off = CameraSpec.model_validate(block), np.random.default_rng(7), []
     for scene in range(6):
-        azimuths = np.linspace(-0.6, 0.6, 6) + rng.uniform(-0.03, 0.03, 6)
-        places = zip(azimuths.tolist(), rng.uniform(1.0, 8.0, 6).tolist(), COLOURS, strict=True)
-        beacons = tuple(beacon(a, d, c) for a, d, c in places)
+        beacons = row_of_beacons(rng, 8.0)
         imager = open_imager(spec, Setting(beacons, scenery=LIT, seed=scene), Cost())
         detector = ColourDetector(spec.lens, beacons)
         for frame in range(6):
