@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from queue import SimpleQueue
+from time import monotonic, sleep
 from typing import Any
 
 import canopen
@@ -59,13 +60,24 @@ class Master:
         node.state = "OPERATION ENABLED"
 
     def await_speed(self, low: float, high: float) -> None:
-        """Waits for 4 s of TPDOs at most until the actual velocity is within these (turns/s)."""
+        """Waits for 4 s of TPDOs at most until the actual velocity stays within these (turns/s) for 0.1 s."""
+        within = 0
         for _ in range(400):
             assert self.node.tpdo[1].wait_for_reception(PATIENCE) is not None
             speed = self.node.tpdo[1][ACTUAL].raw / TURN
-            if low <= speed <= high:
+            within = within + 1 if low <= speed <= high else 0
+            if within == 10:
                 return
         raise AssertionError(f"{speed} turns/s is not between {low} and {high}")
+
+    def await_standstill(self) -> None:
+        """Waits until the position stays for 50 ms: a test that failed may have left the motor turning."""
+        before, now = None, self.node.sdo[POSITION].raw
+        until = monotonic() + PATIENCE
+        while before != now:
+            assert monotonic() < until, "the motor does not come to rest"
+            sleep(0.05)
+            before, now = now, self.node.sdo[POSITION].raw
 
 
 @pytest.fixture(scope="module")
@@ -79,11 +91,12 @@ def network() -> Iterator[canopen.Network]:
 
 @pytest.fixture
 def master(network: canopen.Network) -> Iterator[Master]:
-    """A master of a drive that has just been reset."""
+    """A master of a drive that has just been reset and stands."""
     master = Master(network)
     with master.ends:
         master.node.nmt.send_command(0x81)
         master.await_state(BOOT_UP)
+        master.await_standstill()
         yield master
 
 
