@@ -119,7 +119,7 @@ def test_the_robot_stands_in_the_end(tmp_path: Path, name: str) -> None:
 def test_a_drive_stops_by_itself(
     tmp_path: Path, name: str, wheels: list[int], still: int, stands: int
 ) -> None:
-    """The controller holds on whatever happens; the last SYNC is sent at 0.29 s, the last heartbeat at 0.2 s."""
+    """The controller holds on whatever happens; its last SYNC is at 0.29 s, its last heartbeat at 0.2 s."""
     _, speed = speeds(small(tmp_path), *settings(CASES[name]), "bus.silent=hold")
     assert np.abs(speed[:, still]).min() > 0.5, "no sooner than the drive must"
     standing = [wheel for wheel in (0, 1) if np.abs(speed[wheel, stands]) < STANDS]
