@@ -1,6 +1,6 @@
 """Property tests: no wall time anywhere, and in CI the same examples every time.
 
-With HILBED_COMPILED=yes the tests run on compiled firmware and wire, where there are any.
+With HILBED_COMPILED=yes the tests run on what is compiled: firmware, bus, plant and EKF.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from hilbed.can.cob import SDO_ANSWER, SDO_REQUEST
 from hilbed.can.drive_table import bundled_tables, load_table
 from hilbed.can.link import Link, Pump
 from hilbed.can.sdo import UPLOAD, SdoClient, SdoError
-from hilbed.clock import MILLISECOND
+from hilbed.clock import MILLISECOND, NEVER
 from hilbed.ports import Bus
 from hilbed.types import Frame, Nanos, Received
 
@@ -50,7 +50,7 @@ def scan(bus: Bus, pump: Pump, listen: Nanos, start: Nanos = 0) -> list[Found]:
     A node that only sends heartbeats is found as well. Raises BusError where the bus is lost.
     """
     bus.recv(start)
-    link = Link(bus, pump, start, 1 << 62)
+    link = Link(bus, pump, start, NEVER)
     heartbeats = nmt.HeartbeatConsumer()
     answers: dict[int, list[bytes]] = {}
     link.listeners += [heartbeats.hear, lambda received: _note(answers, received)]

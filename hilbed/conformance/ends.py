@@ -12,7 +12,7 @@ from hilbed.can.drive_table import OWN, DriveTable, load_table
 from hilbed.can.link import Link
 from hilbed.can.node import Node
 from hilbed.can.wire import Wire
-from hilbed.clock import MILLISECOND
+from hilbed.clock import MILLISECOND, NEVER
 from hilbed.drive.desk import Build, Desk
 from hilbed.plant.specs import SimulatedSpec
 from hilbed.types import Frame, Nanos
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from firmware_sim import Drive
 
 WIRE = "hilbed"
-_FOREVER: Nanos = 1 << 62
 
 
 class End(NamedTuple):
@@ -36,7 +35,7 @@ class End(NamedTuple):
 def live(interface: str | None, channel: str | None, bitrate: int | None) -> Iterator[End]:
     """Opens a python-can bus; ScenarioError where it cannot be opened."""
     with open_bus(interface, channel, bitrate, step=0.001) as bus:
-        yield End(Link(bus, bus.pump, bus.now, _FOREVER), bus.adapter.name, exact=False)
+        yield End(Link(bus, bus.pump, bus.now, NEVER), bus.adapter.name, exact=False)
 
 
 class Ticking(Protocol):
@@ -74,7 +73,7 @@ def on_the_wire(desk: Ticking, bitrate: int) -> End:
         wire.advance(t + MILLISECOND)
         return t + MILLISECOND
 
-    return End(Link(port, pump, 0, _FOREVER), f"wire, {bitrate} bit/s", exact=True)
+    return End(Link(port, pump, 0, NEVER), f"wire, {bitrate} bit/s", exact=True)
 
 
 def simulated(node: Node, bitrate: int) -> End:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import atan2, cos, hypot, isnan, sin
 
 from hilbed.angles import wrap
-from hilbed.clock import seconds
+from hilbed.clock import NEVER, seconds
 from hilbed.plant.recorded import Recorded
 from hilbed.ports import Witness
 from hilbed.spec import Point
@@ -53,7 +53,7 @@ class RecordedPlant:
 class RecordedSensor:
     """Readings of one kind, delivered at their own times; true values, from the true pose, to the witness."""
 
-    due: Nanos = 2**62  # never: there is no world to be sampled
+    due: Nanos = NEVER  # there is no world to be sampled
 
     def __init__(self, recorded: Recorded, kind: str, witness: Witness) -> None:
         self._recorded = recorded

@@ -121,16 +121,19 @@ def _remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
-def check_folder(path: Path) -> None:
-    """Raises ScenarioError where a folder cannot be made or written to, before there is work to be lost.
+def check_folder(path: Path) -> bool:
+    """Returns whether a folder holds anything; raises ScenarioError where it cannot be made or written to.
 
-    What is tried out for it is taken back.
+    For the time before there is work to be lost. What is tried out for it is taken back.
     """
     try:
         _check_writable(path)
         missing = [place for place in (path, *path.absolute().parents) if not place.exists()]
         path.mkdir(parents=True, exist_ok=True)
-        for place in missing:
-            place.rmdir()
+        filled = any(path.iterdir())
+        with suppress(OSError):  # others may have begun to write there meanwhile
+            for place in missing:
+                place.rmdir()
     except OSError as error:
         raise ScenarioError(f"{path}: {error.strerror}; give another folder with --out") from error
+    return filled

@@ -10,7 +10,7 @@ from hilbed.build.known import nodes_of, start_of, surroundings, told_of
 from hilbed.build.minds import Guidance, make_controller, make_estimator
 from hilbed.build.upsets import Nowhere, effects_of, schedule_of
 from hilbed.can.base import CanBase
-from hilbed.clock import nanos
+from hilbed.clock import NEVER, nanos
 from hilbed.cost import Cost
 from hilbed.disturbances.commands import DisturbedBase
 from hilbed.effects import Effects
@@ -43,7 +43,7 @@ class RecordedBus:
 class RecordedSensor:
     """Hands out recorded readings when they were delivered."""
 
-    due: Nanos = 2**62  # never: there is no world to be sampled
+    due: Nanos = NEVER  # there is no world to be sampled
 
     def __init__(self, recorded: Iterable[Reading]) -> None:
         self._coming = deque(recorded)

@@ -103,7 +103,7 @@ def _axes(lens: Lens, runs: Runs, blobs: Blobs, edges: Edges, may_lean: bool) ->
     tapers = each(taper)
     middle = 0.5 * (left + right) - 0.5 * tapers * (low - high)
     azimuth = mean(middle)
-    if lens.upright and not lens.distorted:
+    if lens.plain:
         pixel = np.cos(azimuth) ** 2 / lens.fx
     else:
         pixel = 2.0 * width / mean(edges.columns[1] - edges.columns[0])

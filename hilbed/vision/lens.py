@@ -86,6 +86,11 @@ class Lens:
         """Whether it is neither tilted nor rolled."""
         return not (self.tilt or self.roll)
 
+    @cached_property
+    def plain(self) -> bool:
+        """Whether it is upright and does not distort: an azimuth is a matter of the column alone."""
+        return self.upright and not self.distorted
+
     @property
     def matrix(self) -> Array:
         """The (3, 3) camera matrix as OpenCV takes it."""
@@ -116,13 +121,13 @@ class Lens:
 
     def column(self, azimuth: float) -> float:
         """Returns the column (pixels) that looks along `azimuth` (rad) on the horizon; NaN out of sight."""
-        if self.upright and not self.distorted:
+        if self.plain:
             return self.cx - self.fx * tan(azimuth)
         return float(self.pixel(azimuth, 0.0)[0])
 
     def azimuth(self, column: float) -> float:
         """Returns the azimuth (rad) along which `column` of the principal row looks."""
-        if self.upright and not self.distorted:
+        if self.plain:
             return atan((self.cx - column) / self.fx)
         return float(self.direction(column, self.cy)[0])
 

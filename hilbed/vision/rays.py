@@ -22,7 +22,7 @@ class Rays(NamedTuple):
 
 def rays(lens: Lens, columns: Array, row: Indices) -> Rays:
     """Returns which way both edges (columns (2, n)) of the runs in these rows look."""
-    if lens.upright and not lens.distorted:
+    if lens.plain:
         azimuth = np.arctan((lens.cx - columns) / lens.fx)
         return Rays(*azimuth, *(np.cos(azimuth) * ((row - lens.cy) / lens.fy)))
     azimuth, elevation = lens.direction(columns.ravel(), np.tile(row, 2).astype(float))
@@ -42,7 +42,7 @@ def steepness(lens: Lens, column: float | Array, row: Indices) -> Array:
 
 def places(lens: Lens, azimuth: Array, depression: Array, row: Array) -> tuple[Array, Array]:
     """Returns columns and rows of what is seen there; depression: its tangent; row: that of its middle."""
-    if lens.upright and not lens.distorted:
+    if lens.plain:
         return np.array([lens.column(one) for one in azimuth.tolist()]), row
     return lens.pixel(azimuth, -np.arctan(depression))
 

@@ -106,10 +106,9 @@ def _admit(plan: Plan, folder: Path, force: bool) -> None:
 
     With force the old dataset goes; what is not a dataset is never removed.
     """
-    check_folder(folder)
+    if not check_folder(folder):
+        return
     try:
-        if not folder.exists() or not any(folder.iterdir()):
-            return
         if not (folder / DATASET).is_file():
             raise ScenarioError(f"{folder} holds no dataset, so nothing is written there; give another --out")
         if force:

@@ -17,12 +17,8 @@ def admit(folder: Path, numbers: str, force: bool) -> None:
 
     numbers: name of its JSON.
     """
-    check_folder(folder)
-    try:
-        if not folder.exists() or not any(folder.iterdir()):
-            return
-    except OSError as error:
-        raise ScenarioError(f"{folder}: {error.strerror}; give another folder with --out") from error
+    if not check_folder(folder):
+        return
     if not (folder / numbers).is_file():
         raise ScenarioError(f"{folder} holds something else; give another folder with --out")
     if not force:

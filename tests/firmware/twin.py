@@ -17,9 +17,8 @@ FRAMES = 25_000
 def digest(seed: int) -> str:
     """Returns the SHA-256 of duties, states, references and frames of a drive that hears noise."""
     from firmware_sim import Drive
-    from tests.firmware.invariants import NODE
     from tests.firmware.noise import Noise
-    from tests.firmware.wire import MILLISECOND
+    from tests.firmware.wire import MILLISECOND, NODE
 
     noise, drive, sha, t = Noise(seed), Drive(NODE), sha256(), 0
     for _ in range(FRAMES):

@@ -18,6 +18,8 @@ needs_compiled = pytest.mark.skipif(
     not compiled.place().is_dir(), reason="nothing compiled here: scripts/setup found no C compiler"
 )
 
+TOPS = ("firmware_sim", "hilbed")
+
 
 def told(*command: object, use: str) -> str:
     environment = {**os.environ, "HILBED_COMPILED": use}
@@ -69,7 +71,7 @@ def test_after_a_change_of_the_sources_they_run_themselves(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     unwanted = shutil.ignore_patterns("__pycache__")
-    for package in ("firmware_sim", "hilbed"):
+    for package in TOPS:
         shutil.copytree(compiled.ROOT / package, tmp_path / package, ignore=unwanted)
     before = compiled.place()
     monkeypatch.setattr(compiled, "ROOT", tmp_path)
@@ -84,14 +86,10 @@ def test_all_that_compiled_modules_import_of_hilbed_counts() -> None:
     counted = {path.relative_to(compiled.ROOT) for path in compiled.sources()}
     for path in compiled.modules():
         for node in ast.walk(ast.parse((compiled.ROOT / path).read_text())):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(
-                ("hilbed.", "firmware_sim")
-            ):
-                places = [Path(*str(node.module).split("."))]
-                places += [places[0] / alias.name for alias in node.names]
-                found = [place for place in (one.with_suffix(".py") for one in places) if place in counted]
-                found += [one for one in places if one / "__init__.py" in counted]
-                assert found, (path, node.module)
+            if isinstance(node, ast.ImportFrom) and str(node.module).split(".")[0] in TOPS:
+                module = Path(*str(node.module).split("."))
+                within = {module / f"{alias.name}.py" for alias in node.names}
+                assert counted & {module.with_suffix(".py"), module / "__init__.py", *within}, (path, module)
 
 
 def test_nothing_else_is_looked_for() -> None:

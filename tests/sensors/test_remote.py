@@ -235,7 +235,7 @@ import sys
 from hilbed.cost import Cost
 from hilbed.sensors.camera import CameraSpec, open_eye
 from hilbed.scene import BeaconSpec
-from hilbed.sensors.exposure import Exposure, still
+from hilbed.sensors.exposure import still
 from hilbed.sensors.eye import Setting
 from hilbed.types import Pose
 eye = open_eye(CameraSpec(), Setting((BeaconSpec(at=(4.0, 0.0)),)), Cost(), separate=True)
