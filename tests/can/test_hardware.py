@@ -142,6 +142,8 @@ def test_a_driver_that_does_not_come_back_holds_nobody_up_and_gets_no_old_frames
         adapter.purge()
         bus.on_send = lambda _: None
         free.set()
+        assert adapter._sender is not None
+        adapter._sender.flush(10.0)  # the driver may take a while to come back
         adapter.send(Frame(2))
         adapter.close(timeout=10.0)
         assert [message.arbitration_id for message in bus.sent] == [0, 2]
